@@ -1,0 +1,55 @@
+"""Which rules a pose keeps and breaks, and by how much."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = ["Certificate", "RuleResult"]
+
+
+@dataclass(frozen=True, slots=True)
+class RuleResult:
+    """One rule, measured on one pose.
+
+    Attributes:
+        rule: Its name, with the side where it has one.
+        value: Largest absolute residual, or the smallest margin where the rule is a margin.
+        unit: "mm" or "deg".
+        bound: What still holds: at most this residual, or at least this margin.
+        held: Whether it holds.
+        source: Where the rule is written down.
+    """
+
+    rule: str
+    value: float
+    unit: str
+    bound: float
+    held: bool
+    source: str
+
+
+@dataclass(frozen=True, slots=True)
+class Certificate:
+    """The rules of one pose.
+
+    Attributes:
+        results: One for each rule that applies.
+    """
+
+    results: tuple[RuleResult, ...]
+
+    @property
+    def held(self) -> bool:
+        """Whether every rule holds."""
+        return all(result.held for result in self.results)
+
+    @property
+    def broken(self) -> tuple[RuleResult, ...]:
+        return tuple(result for result in self.results if not result.held)
+
+    def __str__(self) -> str:
+        if self.held:
+            return f"all {len(self.results)} rules held"
+        return "; ".join(
+            f"{r.rule}: {r.value:.1f} {r.unit} against {r.bound:g}" for r in self.broken
+        )

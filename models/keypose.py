@@ -1,0 +1,250 @@
+"""The key-pose solver: rules as one constrained problem, seeded, polished and certified.
+
+The problem is built before it is solved, once for each structure of a pose (which feet stand, how
+the arms are shaped), with the numbers of the target as parameters:
+
+    minimise    sum_i w_i |r_i(q, p)|^2            over the rules that a dancer prefers to keep
+    subject to  r_j(q, p) = 0                      over the rules that a dancer must keep
+                r_k(q, p) >= bound_k
+                q_min <= q <= q_max
+
+in the root's position and rotation vector and the hinge angles (nv unknowns).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from time import perf_counter
+
+import casadi as ca
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from enpointe.errors import PoseError
+from enpointe.models.certificate import Certificate, RuleResult
+from enpointe.models.figure import Figure
+from enpointe.models.kinematics import SymbolicBody, qpos_from_tangent
+from enpointe.models.rules import Kind, Rule, Symbols, rules_for
+from enpointe.models.seed import differential_ik
+from enpointe.models.target import PoseTarget
+
+__all__ = ["KeyPose", "KeyPoseSolver", "PoseProblem"]
+
+_RANGE_MARGIN = np.radians(0.5)
+_POSTURE_WEIGHT = 1e-3
+_IPOPT = {
+    "ipopt.print_level": 0,
+    "ipopt.sb": "yes",
+    "ipopt.max_iter": 200,
+    "ipopt.tol": 1e-7,
+    "ipopt.constr_viol_tol": 1e-8,
+    "ipopt.mu_init": 1e-3,
+    "ipopt.bound_push": 1e-6,
+    "ipopt.bound_frac": 1e-6,
+    "print_time": False,
+    "error_on_fail": False,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class KeyPose:
+    """One solved pose.
+
+    Attributes:
+        name: Of the target.
+        qpos: (nq,), the dancer facing x.
+        certificate: Each rule, held or broken.
+        target: What was asked.
+        solve_ms: Wall time of seed and solution.
+        iterations: Of the interior-point method.
+    """
+
+    name: str
+    qpos: NDArray[np.float64]
+    certificate: Certificate
+    target: PoseTarget
+    solve_ms: float
+    iterations: int
+
+    @property
+    def held(self) -> bool:
+        """Whether every rule holds."""
+        return self.certificate.held
+
+
+class PoseProblem:
+    """The nonlinear programme of one structure of poses, to be looked at or solved.
+
+    Attributes:
+        rules: In the order of the certificate.
+        unknowns: Symbols of root position, root rotation vector and hinge angles, (nv, 1).
+        cost: Scalar expression.
+        equalities: (ne, 1), zero at a solution.
+        margins: (ni, 1), at least `margin_bounds` at a solution.
+    """
+
+    def __init__(self, model: mujoco.MjModel, rules: tuple[Rule, ...]) -> None:
+        self.rules = rules
+        self.symbols = Symbols()
+        self.unknowns = ca.SX.sym("x", model.nv)
+        body = SymbolicBody(model, qpos_from_tangent(model, self.unknowns))
+        residuals = {rule.label: rule.residual(body, self.symbols) for rule in rules}
+        self.cost = _POSTURE_WEIGHT * ca.sumsqr(self.unknowns[6:])
+        equalities: list[ca.SX] = []
+        margins: list[ca.SX] = []
+        bounds: list[float] = []
+        for rule in rules:
+            residual = residuals[rule.label]
+            if rule.kind is Kind.EQUAL:
+                equalities.append(residual)
+            elif rule.kind is Kind.AT_LEAST:
+                margins.append(residual)
+                bounds += [rule.bound / rule.per_unit] * residual.numel()
+            elif rule.kind is Kind.PREFER:
+                self.cost += rule.weight * ca.sumsqr(residual)
+        self.equalities = ca.vertcat(*equalities)
+        self.margins = ca.vertcat(*margins)
+        self.margin_bounds = np.array(bounds)
+        parameters = self.symbols.vector
+        self._measure = ca.Function(
+            "rules", [self.unknowns, parameters], [ca.vertcat(*residuals.values())]
+        )
+        self._slices = _slices([r.numel() for r in residuals.values()])
+        problem = {
+            "x": self.unknowns,
+            "p": parameters,
+            "f": self.cost,
+            "g": ca.vertcat(self.equalities, self.margins),
+        }
+        self._solver = ca.nlpsol("key_pose", "ipopt", problem, _IPOPT)
+
+    def parameters(self, target: PoseTarget) -> NDArray[np.float64]:
+        """The numbers of `target` in the problem's order, (P,)."""
+        values: dict[str, NDArray[np.float64]] = {}
+        for rule in self.rules:
+            values |= rule.values(target)
+        return self.symbols.fill(values)
+
+    def solve(
+        self,
+        guess: NDArray[np.float64],
+        parameters: NDArray[np.float64],
+        lower: NDArray[np.float64],
+        upper: NDArray[np.float64],
+    ) -> tuple[NDArray[np.float64], int]:
+        """Polish a guess (nv,); returns the unknowns (nv,) and the number of iterations."""
+        zeros = np.zeros(self.equalities.numel())
+        solution = self._solver(
+            x0=np.clip(guess, lower, upper),
+            p=parameters,
+            lbx=lower,
+            ubx=upper,
+            lbg=np.concatenate([zeros, self.margin_bounds]),
+            ubg=np.concatenate([zeros, np.full(self.margins.numel(), np.inf)]),
+        )
+        return np.asarray(solution["x"]).ravel(), int(self._solver.stats()["iter_count"])
+
+    def certify(
+        self, unknowns: NDArray[np.float64], parameters: NDArray[np.float64]
+    ) -> Certificate:
+        """Measure every rule at a solution, whatever the solver said of itself."""
+        residual = np.asarray(self._measure(unknowns, parameters)).ravel()
+        results = [
+            _result(rule, residual[part])
+            for rule, part in zip(self.rules, self._slices, strict=True)
+        ]
+        return Certificate(tuple(results))
+
+
+class KeyPoseSolver:
+    """Solves poses of one dancer; compiled problems are kept for poses of the same structure.
+
+    Example:
+        >>> from enpointe.models import KeyPoseSolver, dancer_model, pose_target
+        >>> from enpointe.notation import load_score
+        >>> solver = KeyPoseSolver(dancer_model())
+        >>> frame = load_score("first-port-de-bras").resolved()[0]
+        >>> solver.solve(pose_target(frame, solver.figure)).held
+        True
+    """
+
+    def __init__(self, model: mujoco.MjModel) -> None:
+        self.model = model
+        self.figure = Figure.of(model)
+        self._problems: dict[object, PoseProblem] = {}
+        self._lower, self._upper = _bounds(model)
+
+    def problem(self, target: PoseTarget) -> PoseProblem:
+        """The problem that a target of this structure poses."""
+        key = target.structure
+        if key not in self._problems:
+            self._problems[key] = PoseProblem(self.model, rules_for(target))
+        return self._problems[key]
+
+    def solve(self, target: PoseTarget, guess: NDArray[np.float64] | None = None) -> KeyPose:
+        """Solve one pose.
+
+        Args:
+            target: What the score asks.
+            guess: A configuration (nq,) nearby, such as the pose before; differential IK from
+                standing if None.
+
+        Returns:
+            The pose and its certificate, which says itself whether the rules hold.
+
+        Raises:
+            PoseError: The solver produced no finite pose.
+        """
+        problem = self.problem(target)
+        parameters = problem.parameters(target)
+        start = perf_counter()
+        seed = differential_ik(self.model, target) if guess is None else guess
+        unknowns, iterations = problem.solve(
+            _tangent(seed), parameters, self._lower, self._upper
+        )
+        elapsed = 1e3 * (perf_counter() - start)
+        if not np.all(np.isfinite(unknowns)):
+            raise PoseError(f"{target.name}: no pose was found; the signs may contradict each other")
+        return KeyPose(
+            name=target.name,
+            qpos=_qpos(unknowns),
+            certificate=problem.certify(unknowns, parameters),
+            target=target,
+            solve_ms=elapsed,
+            iterations=iterations,
+        )
+
+
+def _bounds(model: mujoco.MjModel) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    ranges = model.jnt_range[1:]
+    lower = np.concatenate([[-2.0, -2.0, 0.0], np.full(3, -np.pi), ranges[:, 0] + _RANGE_MARGIN])
+    upper = np.concatenate([[2.0, 2.0, 3.0], np.full(3, np.pi), ranges[:, 1] - _RANGE_MARGIN])
+    return lower, upper
+
+
+def _tangent(qpos: NDArray[np.float64]) -> NDArray[np.float64]:
+    rotation = Rotation.from_quat(qpos[3:7], scalar_first=True).as_rotvec()
+    return np.concatenate([qpos[:3], rotation, qpos[7:]])
+
+
+def _qpos(unknowns: NDArray[np.float64]) -> NDArray[np.float64]:
+    quaternion = Rotation.from_rotvec(unknowns[3:6]).as_quat(canonical=True, scalar_first=True)
+    return np.concatenate([unknowns[:3], quaternion, unknowns[6:]])
+
+
+def _slices(lengths: list[int]) -> list[slice]:
+    ends = np.cumsum(lengths)
+    return [slice(int(end) - n, int(end)) for end, n in zip(ends, lengths, strict=True)]
+
+
+def _result(rule: Rule, residual: NDArray[np.float64]) -> RuleResult:
+    scaled = residual * rule.per_unit
+    if rule.kind is Kind.AT_LEAST:
+        value = float(scaled.min())
+        held = value >= rule.bound - 1e-3
+    else:
+        value = float(np.abs(scaled).max())
+        held = value <= rule.bound
+    return RuleResult(rule.label, value, rule.unit, rule.bound, bool(held), rule.source)
