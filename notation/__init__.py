@@ -1,0 +1,38 @@
+"""What is to be danced: a score in machine-readable Benesh notation.
+
+Example:
+    >>> from enpointe.notation import format_score, load_score, parse_score
+    >>> score = load_score("third-port-de-bras")
+    >>> len(score.frames), score.frames[1].arms.name
+    (9, 'fifth en haut')
+    >>> score.resolved()[2].arms["left"].wrist.height  # not written at beat 2: held from beat 1
+    5.7
+    >>> parse_score(format_score(score)) == score
+    True
+"""
+
+from __future__ import annotations
+
+from enpointe.notation.parser import MAX_BYTES as MAX_BYTES
+from enpointe.notation.parser import VERSION as VERSION
+from enpointe.notation.parser import parse_score as parse_score
+from enpointe.notation.score import TEMPO_RANGE as TEMPO_RANGE
+from enpointe.notation.score import ArmSigns as ArmSigns
+from enpointe.notation.score import Frame as Frame
+from enpointe.notation.score import ResolvedFrame as ResolvedFrame
+from enpointe.notation.score import Score as Score
+from enpointe.notation.shelf import load_score as load_score
+from enpointe.notation.shelf import shipped_scores as shipped_scores
+from enpointe.notation.signs import ArmsPosition as ArmsPosition
+from enpointe.notation.signs import Depth as Depth
+from enpointe.notation.signs import FeetPosition as FeetPosition
+from enpointe.notation.signs import Location as Location
+from enpointe.notation.signs import Orientation as Orientation
+from enpointe.notation.signs import Side as Side
+from enpointe.notation.signs import Sign as Sign
+from enpointe.notation.stave import stave_svg as stave_svg
+from enpointe.notation.vocabulary import arm_signs as arm_signs
+from enpointe.notation.vocabulary import feet_signs as feet_signs
+from enpointe.notation.vocabulary import names as names
+from enpointe.notation.writer import format_beat as format_beat
+from enpointe.notation.writer import format_score as format_score
