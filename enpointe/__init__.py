@@ -1,0 +1,1 @@
+"""A virtual ballet dancer that obeys gravity."""
