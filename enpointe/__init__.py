@@ -1,1 +1,56 @@
-"""A virtual ballet dancer that obeys gravity."""
+"""A virtual ballet dancer that obeys gravity.
+
+Example:
+    >>> import enpointe
+    >>> dance = enpointe.perform("third-port-de-bras", effort="happy")
+    >>> dance.summary()["completed"]
+    True
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from enpointe.lazy import lazy
+
+if TYPE_CHECKING:
+    from enpointe.comparing import Comparison as Comparison
+    from enpointe.comparing import compare as compare
+    from enpointe.doctor import diagnose as diagnose
+    from enpointe.errors import EnpointeError as EnpointeError
+    from enpointe.notation import load_score as load_score
+    from enpointe.performing import Performance as Performance
+    from enpointe.performing import perform as perform
+    from enpointe.posing import Poses as Poses
+    from enpointe.posing import pose as pose
+    from enpointe.report import write_report as write_report
+
+__version__ = "0.1.0"
+
+_HOMES = {
+    "Comparison": "enpointe.comparing",
+    "EnpointeError": "enpointe.errors",
+    "Performance": "enpointe.performing",
+    "Poses": "enpointe.posing",
+    "compare": "enpointe.comparing",
+    "diagnose": "enpointe.doctor",
+    "load_score": "enpointe.notation",
+    "perform": "enpointe.performing",
+    "pose": "enpointe.posing",
+    "write_report": "enpointe.report",
+}
+
+__all__ = [
+    "Comparison",
+    "EnpointeError",
+    "Performance",
+    "Poses",
+    "__version__",
+    "compare",
+    "diagnose",
+    "load_score",
+    "perform",
+    "pose",
+    "write_report",
+]
+__getattr__, __dir__ = lazy(__name__, _HOMES)

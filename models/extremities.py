@@ -80,14 +80,12 @@ def _check_reach(
 ) -> None:
     if beyond >= -2 * _GRAZE * length:
         return
-    limb = "leg" if leg else "arm"
+    limb, joint = ("leg", "hip") if leg else ("arm", "shoulder")
     short = sqrt(length**2 - beyond) - length
     line, column = (sign.at.line, sign.at.column) if sign.at else (1, 1)
     raise ScoreError(
         f"this sign is {short * 100:.0f} cm beyond the reach of the {limb}; "
-        "bring it closer to the shoulder's" if not leg else
-        f"this sign is {short * 100:.0f} cm beyond the reach of the {limb}; bring it closer to the hip's"
-        " height or to the centre line",
+        f"bring it closer to the {joint}",
         line,
         column,
         source,

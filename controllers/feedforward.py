@@ -1,0 +1,96 @@
+"""Torques that a motion needs, with the floor carrying what no muscle can: the root.
+
+Inverse dynamics gives the generalised force of the motion, b = M qacc + h. Its first six rows must
+come from the floor alone,
+
+    sum_i J_i,root^T f_i = b_root,    f_i in the friction pyramid,
+
+and the joints give the rest,  tau = b_joints - sum_i J_i,joints^T f_i. The forces are the smallest
+that do it (non-negative least squares over the pyramid's edges, lightly regularised).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import nnls
+
+from enpointe.controllers.plant import Plant
+from enpointe.motion import Motion
+
+__all__ = ["FeedForward", "floor_forces"]
+
+Array = NDArray[np.float64]
+RATE = 50.0
+"""Samples a second at which torques are computed; they are interpolated in between."""
+FRICTION = 0.7
+"""Planned below the floor's friction of 1, as a dancer does not count on the last of it."""
+_REGULARISATION = 3e-3
+
+
+@dataclass(frozen=True)
+class FeedForward:
+    """Torques along a motion.
+
+    Attributes:
+        time: (N,), s.
+        torque: (N, nu), N m.
+        shortfall: (N,), what of the root's force and moment the floor could not give, N (moments
+            over 1 m); a motion with a large shortfall can't be danced as it is.
+    """
+
+    time: Array
+    torque: Array
+    shortfall: Array
+
+    @classmethod
+    def along(cls, motion: Motion) -> FeedForward:
+        """Compute the torques of a whole motion."""
+        plant = Plant(motion.model)
+        time = np.arange(0.0, motion.duration + 1.0 / RATE, 1.0 / RATE)
+        torque = np.empty((len(time), motion.model.nu))
+        shortfall = np.empty(len(time))
+        for i, t in enumerate(time):
+            qpos, qvel, qacc = motion.sample(float(t))
+            plant.place(qpos, qvel)
+            torque[i], shortfall[i] = _torques(plant, qacc)
+        return cls(time, torque, shortfall)
+
+    def at(self, t: float) -> Array:
+        """Torques (nu,) at `t` seconds, linear between samples."""
+        i = min(max(int(t * RATE), 0), len(self.time) - 2)
+        w = min(max(t * RATE - i, 0.0), 1.0)
+        return np.asarray((1 - w) * self.torque[i] + w * self.torque[i + 1])
+
+
+def floor_forces(plant: Plant, wrench: Array) -> tuple[Array, Array]:
+    """Forces at the soles on the floor that give the root `wrench`.
+
+    Args:
+        plant: Placed at a pose.
+        wrench: (6,), the root's rows of inverse dynamics.
+
+    Returns:
+        Their generalised force on the whole body (nv,), and the part of `wrench` left over (6,).
+    """
+    geoms = plant.soles_on_floor()
+    if len(geoms) == 0:
+        return np.zeros(plant.model.nv), wrench
+    edges = np.array(
+        [[FRICTION, 0, 1], [-FRICTION, 0, 1], [0, FRICTION, 1], [0, -FRICTION, 1]]
+    )
+    jacobians = plant.contact_jacobians(geoms)
+    spread = np.einsum("ec,scv->sev", edges, jacobians).reshape(-1, plant.model.nv)
+    matrix = np.vstack([spread[:, :6].T, _REGULARISATION * np.eye(len(spread))])
+    forces, _ = nnls(matrix, np.concatenate([wrench, np.zeros(len(spread))]))
+    given = forces @ spread
+    return given, wrench - given[:6]
+
+
+def _torques(plant: Plant, qacc: Array) -> tuple[Array, float]:
+    needed = plant.inverse_dynamics(qacc)
+    given, missing = floor_forces(plant, needed[:6])
+    torque = (needed - given)[plant.actuated_dofs]
+    return np.clip(torque, -plant.torque_limit, plant.torque_limit), float(np.linalg.norm(missing))

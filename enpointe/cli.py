@@ -1,0 +1,241 @@
+"""The command line: each verb a thin shell over the public function of the same name."""
+
+from __future__ import annotations
+
+import os
+import sys
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+import enpointe
+from enpointe.console import Console
+from enpointe.errors import EnpointeError
+
+if TYPE_CHECKING:
+    from enpointe.models import Anthropometry, Style
+
+__all__ = ["app", "main"]
+
+DONE, NO, BAD_INPUT = 0, 1, 2
+"""Exit codes: the job is done; the answer is no; the input is bad."""
+
+app = typer.Typer(
+    name="enpointe",
+    help="A virtual ballet dancer that obeys gravity.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+
+class ControllerName(StrEnum):
+    KINEMATIC = "kinematic"
+    PD = "pd"
+
+
+class BodyName(StrEnum):
+    DANCER = "dancer"
+
+
+class SexName(StrEnum):
+    FEMALE = "female"
+    MALE = "male"
+
+
+Score = Annotated[str, typer.Argument(help="A shipped score's name, or a .bmn file.")]
+Effort = Annotated[
+    str,
+    typer.Option(
+        help="natural, happy, sad, angry, afraid; or numbers: time=-3.5,weight=.41,space=1."
+    ),
+]
+Tempo = Annotated[
+    float | None, typer.Option(help="Beats a minute; the effort's or the score's if left out.")
+]
+Out = Annotated[
+    Path | None, typer.Option(help="Folder to write to; named after the input if left out.")
+]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
+Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing but errors.")]
+Seed = Annotated[int, typer.Option(help="Seed of what is random; in this verb nothing is.")]
+Video = Annotated[bool, typer.Option(help="Film the dance (the slowest part).")]
+Height = Annotated[float, typer.Option(help="The dancer's height, m.")]
+Mass = Annotated[float, typer.Option(help="The dancer's mass, kg.")]
+SexOption = Annotated[SexName, typer.Option(help="Whose proportions the dancer has.")]
+Turnout = Annotated[float, typer.Option(help="Turnout of each leg, degrees.")]
+
+
+@app.command()
+def perform(
+    source: Score,
+    effort: Effort = "natural",
+    tempo: Tempo = None,
+    controller: Annotated[
+        ControllerName, typer.Option(help="pd dances under gravity; kinematic only moves.")
+    ] = ControllerName.PD,
+    body: Annotated[BodyName, typer.Option(help="Who dances.")] = BodyName.DANCER,
+    height: Height = 1.68,
+    mass: Mass = 54.0,
+    sex: SexOption = SexName.FEMALE,
+    turnout: Turnout = 70.0,
+    out: Out = None,
+    video: Video = True,
+    json: Json = False,
+    quiet: Quiet = False,
+    seed: Seed = 0,
+) -> int:
+    """Dance a score under gravity, and write a report of it."""
+    console = Console(json=json, quiet=quiet)
+    with console.progress() as progress:
+        score = enpointe.load_score(source)
+        dance = enpointe.perform(
+            score,
+            effort=effort,
+            tempo=tempo,
+            controller=controller.value,
+            style=_style(turnout),
+            dancer=_dancer(height, mass, sex),
+            progress=progress,
+        )
+        folder = _folder(out, source)
+        files = enpointe.write_report(dance, folder, video=video, progress=progress)
+        files |= dance.save(folder)
+    console.show(dance.summary(), files, folder)
+    return DONE if dance.completed and not dance.broken else NO
+
+
+@app.command()
+def compare(
+    source: Score,
+    effort: Effort = "natural",
+    tempo: Tempo = None,
+    height: Height = 1.68,
+    mass: Mass = 54.0,
+    sex: SexOption = SexName.FEMALE,
+    turnout: Turnout = 70.0,
+    out: Out = None,
+    video: Video = True,
+    json: Json = False,
+    quiet: Quiet = False,
+    seed: Seed = 0,
+) -> int:
+    """Dance a score by slerp, by expressive kinematics and by physics, side by side."""
+    console = Console(json=json, quiet=quiet)
+    with console.progress() as progress:
+        score = enpointe.load_score(source)
+        comparison = enpointe.compare(
+            score,
+            effort=effort,
+            tempo=tempo,
+            style=_style(turnout),
+            dancer=_dancer(height, mass, sex),
+            progress=progress,
+        )
+        folder = _folder(out, f"{Path(source).stem}-compared")
+        files = enpointe.write_report(comparison, folder, video=video, progress=progress)
+    console.show(comparison.summary(), files, folder)
+    return DONE if comparison.completed else NO
+
+
+@app.command()
+def pose(
+    source: Annotated[
+        str | None,
+        typer.Argument(help="A position ('arms fifth en haut'), a shipped score, or a .bmn file."),
+    ] = None,
+    names: Annotated[bool, typer.Option("--list", help="List the vocabulary.")] = False,
+    height: Height = 1.68,
+    mass: Mass = 54.0,
+    sex: SexOption = SexName.FEMALE,
+    turnout: Turnout = 70.0,
+    out: Out = None,
+    json: Json = False,
+    quiet: Quiet = False,
+    seed: Seed = 0,
+) -> int:
+    """Solve key poses; say which rules of ballet each keeps and breaks."""
+    console = Console(json=json, quiet=quiet)
+    if names:
+        from enpointe.notation import names as vocabulary
+        from enpointe.notation import shipped_scores
+
+        console.list([*vocabulary(), *shipped_scores()])
+        return DONE
+    if source is None:
+        raise EnpointeError("name a position, a score or a .bmn file, or use --list")
+    with console.progress() as progress:
+        poses = enpointe.pose(source, style=_style(turnout), dancer=_dancer(height, mass, sex))
+        folder = _folder(out, source)
+        files = enpointe.write_report(poses, folder, progress=progress)
+    console.show(poses.summary(), files, folder)
+    return DONE if poses.held else NO
+
+
+@app.command()
+def doctor(
+    json: Json = False,
+    quiet: Quiet = False,
+) -> int:
+    """Say what this machine can do: OpenGL, encoder, serial ports, versions."""
+    from enpointe.doctor import as_table, examine
+
+    console = Console(json=json, quiet=quiet)
+    diagnosis = examine()
+    if json:
+        console.print_json(enpointe.diagnose())
+    else:
+        console.print(as_table(diagnosis))
+    return DONE
+
+
+def main() -> None:
+    """Run the command line; the one place where an error becomes a line and an exit code."""
+    sys.exit(_run(sys.argv[1:]))
+
+
+def _run(arguments: list[str]) -> int:
+    try:
+        code = app(args=arguments, standalone_mode=False)
+    except EnpointeError as error:
+        return _refuse(str(error))
+    except (typer.Abort, KeyboardInterrupt):
+        return _refuse("stopped")
+    except BrokenPipeError:
+        # Whoever read our output has gone; pointing it elsewhere keeps the exit quiet.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return DONE
+    except Exception as error:
+        # Typer carries its own copy of click, whose usage errors have no importable base class.
+        if callable(explain := getattr(error, "format_message", None)):
+            return _refuse(explain())
+        if os.environ.get("ENPOINTE_DEBUG"):
+            raise
+        return _refuse(
+            f"a fault of ours, {type(error).__name__}: {' '.join(str(error).split())}"
+            " (set ENPOINTE_DEBUG=1 and run again to see where, and please report it)"
+        )
+    return code if isinstance(code, int) else DONE
+
+
+def _refuse(message: str) -> int:
+    print(f"enpointe: {' '.join(message.split())}", file=sys.stderr)
+    return BAD_INPUT
+
+
+def _folder(out: Path | None, source: str) -> Path:
+    return out if out is not None else Path(Path(source).stem.strip().replace(" ", "-") or "out")
+
+
+def _style(turnout: float) -> Style:
+    from enpointe.models.target import Style
+
+    return Style(turnout_deg=turnout)
+
+
+def _dancer(height: float, mass: float, sex: SexName) -> Anthropometry:
+    from enpointe.models.anthropometry import Anthropometry, Sex
+
+    return Anthropometry(height, mass, Sex(sex.value))

@@ -1,0 +1,122 @@
+"""What a person or a script sees: progress on a terminal, tables, or one JSON object."""
+
+from __future__ import annotations
+
+import json as jsonlib
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+import rich.console
+from rich.console import RenderableType
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from enpointe.performing import Progress as Report
+
+__all__ = ["Console"]
+
+
+class Console:
+    """Output of one command.
+
+    Args:
+        json: Print one JSON object on standard output and nothing else.
+        quiet: Print nothing but errors.
+    """
+
+    def __init__(self, *, json: bool, quiet: bool) -> None:
+        self._json = json
+        self._quiet = quiet
+        self._out = rich.console.Console(highlight=False, soft_wrap=True)
+
+    @contextmanager
+    def progress(self) -> Iterator[Report]:
+        """A progress bar for each task on a terminal; silent in a pipe, with --json and with -q."""
+        if self._json or self._quiet or not sys.stderr.isatty():
+            yield lambda task, done, total: None
+            return
+        bars = Progress(
+            TextColumn("{task.description:<12}"),
+            BarColumn(),
+            TextColumn("{task.percentage:3.0f} %"),
+            TimeElapsedColumn(),
+            console=rich.console.Console(stderr=True),
+            transient=True,
+        )
+        tasks: dict[str, object] = {}
+        with bars:
+
+            def show(task: str, done: float, total: float) -> None:
+                if task not in tasks:
+                    tasks[task] = bars.add_task(task, total=total)
+                bars.update(tasks[task], completed=done, total=total)  # type: ignore[arg-type]
+
+            yield show
+
+    def show(
+        self, figures: Mapping[str, object], files: Mapping[str, Path], folder: Path
+    ) -> None:
+        """The figures of a job and what it wrote."""
+        if self._json:
+            paths = {name: str(path) for name, path in files.items()}
+            self.print_json({**figures, "files": paths})
+        elif not self._quiet:
+            self._out.print(_table(figures))
+            report = files.get("report", folder)
+            self._out.print(f"report: {report}")
+
+    def list(self, names: Sequence[str]) -> None:
+        """Names, one a line."""
+        if self._json:
+            self.print_json({"names": [*names]})
+        elif not self._quiet:
+            for name in names:
+                self._out.print(name, markup=False)
+
+    def print(self, what: RenderableType) -> None:
+        """Anything rich can draw."""
+        if not self._quiet:
+            self._out.print(what)
+
+    def print_json(self, value: object) -> None:
+        """One JSON object; not-a-numbers and infinities become null, which JSON lacks."""
+        print(jsonlib.dumps(_finite(value), allow_nan=False))
+
+
+def _finite(value: object) -> object:
+    if isinstance(value, float):
+        return value if value == value and abs(value) != float("inf") else None
+    if isinstance(value, Mapping):
+        return {str(k): _finite(v) for k, v in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_finite(v) for v in value]
+    return value
+
+
+def _table(figures: Mapping[str, object]) -> Table:
+    table = Table(show_header=False, box=None, pad_edge=False)
+    table.add_column(style="dim")
+    table.add_column()
+    for name, value in _flat(figures):
+        table.add_row(name, value)
+    return table
+
+
+def _flat(figures: Mapping[str, object], prefix: str = "") -> Iterator[tuple[str, str]]:
+    for name, value in figures.items():
+        label = f"{prefix}{name}"
+        if isinstance(value, Mapping):
+            yield from _flat(value, f"{label}.")
+        elif name == "poses" and isinstance(value, list):
+            for entry in value:
+                broken = [r["rule"] for r in entry["rules"] if not r["held"]]
+                verdict = f"broken: {', '.join(broken)}" if broken else "all rules held"
+                yield entry["name"], f"{verdict} ({entry['solve_ms']:.0f} ms)"
+        elif isinstance(value, float):
+            yield label, f"{value:.4g}"
+        elif isinstance(value, list):
+            yield label, ", ".join(str(v) for v in value) or "none"
+        else:
+            yield label, "none" if value is None else str(value)

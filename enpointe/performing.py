@@ -1,0 +1,291 @@
+"""`enpointe perform`: a score in, a dance under gravity out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from enpointe.errors import EnpointeError
+from enpointe.notation import Score, load_score
+
+if TYPE_CHECKING:
+    from enpointe.controllers import Recording
+    from enpointe.models import Anthropometry, KeyPose, Style
+    from enpointe.motion import Choreography, Effort, Interpolation, Motion
+    from enpointe.motion.wrist import LogisticFit
+    from enpointe.sim.measures import Measures
+
+__all__ = ["CONTROLLERS", "Performance", "Progress", "dance", "perform", "prepare", "silent"]
+
+Progress = Callable[[str, float, float], None]
+"""Called with what is being done, how much of it is done, and how much there is."""
+CONTROLLERS = ("kinematic", "pd")
+
+
+def silent(task: str, done: float, total: float) -> None:
+    """No progress shown."""
+
+
+@dataclass(frozen=True)
+class Performance:
+    """A dance, and everything that led to it.
+
+    Attributes:
+        choreography: The score solved on the dancer.
+        effort: Quality that was asked.
+        effort_name: Preset or numbers.
+        interpolation: How the key poses were joined.
+        controller: "kinematic" or "pd".
+        motion: The reference: what was to be danced.
+        recording: What happened; None for a kinematic performance.
+        measures: Figures of the recording; None for a kinematic performance.
+    """
+
+    choreography: Choreography
+    effort: Effort
+    effort_name: str
+    interpolation: Interpolation
+    controller: str
+    motion: Motion
+    recording: Recording | None
+    measures: Measures | None
+
+    @property
+    def score(self) -> Score:
+        return self.choreography.score
+
+    @property
+    def danced(self) -> Motion:
+        """What was really danced: the recording as a motion, or the motion itself."""
+        return self.motion if self.recording is None else self.recording.as_motion()
+
+    @property
+    def completed(self) -> bool:
+        """Whether the dancer got to the end."""
+        return self.recording is None or self.recording.fault is None
+
+    @property
+    def broken(self) -> tuple[tuple[KeyPose, str], ...]:
+        """Key poses whose certificate has a broken rule, with the certificate in words."""
+        return tuple(
+            (pose, str(pose.certificate))
+            for pose in self.choreography.key_poses
+            if not pose.held
+        )
+
+    def asked_fit(self) -> LogisticFit | None:
+        """The logistic that the wrists were asked to follow, fitted to the reference."""
+        from enpointe.motion.wrist import fit_logistic, wrist_profiles
+
+        return fit_logistic(wrist_profiles(self.motion))
+
+    def danced_fit(self) -> LogisticFit | None:
+        """The logistic fitted to what the wrists did."""
+        from enpointe.motion.wrist import fit_logistic, wrist_profiles
+
+        return fit_logistic(wrist_profiles(self.danced))
+
+    def save(self, folder: Path) -> dict[str, Path]:
+        """Write `motion.npz` and, of a physical performance, `recording.npz`; returns their paths."""
+        from enpointe.motion.npz import save_motion
+
+        files = {"motion": folder / "motion.npz"}
+        save_motion(self.danced, files["motion"])
+        if self.recording is not None:
+            files["recording"] = folder / "recording.npz"
+            self.recording.save(files["recording"])
+        return files
+
+    def summary(self) -> dict[str, object]:
+        """The figures that `--json` prints, SI units; the names are a promise to scripts."""
+        danced = self.danced
+        fit = self.danced_fit()
+        figures: dict[str, object] = {
+            "title": self.score.title,
+            "controller": self.controller,
+            "effort": {
+                "name": self.effort_name,
+                "time": self.effort.time,
+                "weight": self.effort.weight,
+                "space": self.effort.space,
+            },
+            "tempo": self.choreography.tempo,
+            "completed": self.completed,
+            "duration": danced.duration,
+            "rules_broken": [f"{pose.name}: {words}" for pose, words in self.broken],
+            "logistic": None
+            if fit is None
+            else {"b": fit.time, "x0": fit.weight, "rms": fit.rms},
+        }
+        if self.recording is not None and self.measures is not None:
+            figures |= _physical_figures(self.recording, self.measures)
+        return figures
+
+
+def _physical_figures(recording: Recording, measures: Measures) -> dict[str, object]:
+    return {
+        "fell_at": measures.fell_at,
+        "fault": recording.fault,
+        "steps": len(recording.time),
+        "root_force_max": measures.root_force_max,
+        "other_contact_max": measures.other_contact_max,
+        "tracking_rms_deg": measures.tracking_rms_deg,
+        "support_margin_min": measures.support_margin_min,
+        "slip_max": measures.slip_max,
+        "flights": [
+            {"start": f.start, "end": f.end, "height": f.height, "turn_deg": f.turn_deg}
+            for f in measures.flights
+        ],
+        "torque_limit_fraction_max": measures.torque_limit_fraction_max,
+        "realtime_factor": recording.realtime_factor,
+    }
+
+
+def check_reach(score: Score, dancer: Anthropometry | None, style: Style | None) -> None:
+    """Refuse signs that this dancer's limbs do not reach, before the solver is loaded.
+
+    Raises:
+        ScoreError: With the place of the sign.
+    """
+    from enpointe.models.dancer import dancer_model
+    from enpointe.models.figure import Figure
+    from enpointe.models.target import pose_target
+
+    figure = Figure.of(dancer_model(dancer, flesh=False))
+    for frame in score.resolved():
+        pose_target(frame, figure, style, source=score.source)
+
+
+def prepare(
+    source: str | Path | Score,
+    *,
+    tempo: float | None = None,
+    style: Style | None = None,
+    dancer: Anthropometry | None = None,
+    progress: Progress = silent,
+) -> Choreography:
+    """Read a score and solve its key poses.
+
+    Args:
+        source: A shipped score's name, a `.bmn` file, or a score.
+        tempo: Pulses a minute; the score's own if None.
+        style: The method's amounts.
+        dancer: Height, mass and sex; a dancer of 1.68 m and 54 kg if None.
+        progress: Told how far it is.
+
+    Raises:
+        ScoreError: The score can't be read or reached.
+        PoseError: A frame without a pose.
+    """
+    score = source if isinstance(source, Score) else load_score(source)
+    score.duration(tempo)
+    check_reach(score, dancer, style)
+    from enpointe.models import KeyPoseSolver, dancer_model
+    from enpointe.motion import solve_key_poses
+
+    return solve_key_poses(
+        score,
+        KeyPoseSolver(dancer_model(dancer)),
+        style=style,
+        tempo=tempo,
+        progress=lambda done, total: progress("key poses", done, total),
+    )
+
+
+def perform(
+    source: str | Path | Score,
+    *,
+    effort: str = "natural",
+    tempo: float | None = None,
+    controller: str = "pd",
+    interpolation: str = "expressive",
+    style: Style | None = None,
+    dancer: Anthropometry | None = None,
+    progress: Progress = silent,
+) -> Performance:
+    """Dance a score.
+
+    Args:
+        source: A shipped score's name, a `.bmn` file, or a score.
+        effort: A preset's name or "time=-3.5,weight=.41,space=1".
+        tempo: Pulses a minute; the preset's if None, and the score's own where that has none.
+        controller: "pd", or "kinematic" for the movement without physics.
+        interpolation: "expressive", "logistic" or "slerp".
+        style: The method's amounts.
+        dancer: Height, mass and sex; a dancer of 1.68 m and 54 kg if None.
+        progress: Told how far it is.
+
+    Returns:
+        The dance; `Performance.summary` has its figures.
+
+    Raises:
+        EnpointeError: Anything that the caller can mend, in one line.
+
+    Example:
+        >>> import enpointe
+        >>> dance = enpointe.perform("first-port-de-bras", effort="angry")
+        >>> dance.summary()["completed"]
+        True
+    """
+    # The score first, and before the engines load: a typing mistake should not wait for them.
+    score = source if isinstance(source, Score) else load_score(source)
+    from enpointe.motion import Interpolation, find_effort
+
+    if controller not in CONTROLLERS:
+        raise EnpointeError(f"no controller {controller!r}; use {' or '.join(CONTROLLERS)}")
+    quality, preset_tempo, effort_name = find_effort(effort)
+    kind = Interpolation.named(interpolation)
+    choreography = prepare(
+        score,
+        tempo=tempo if tempo is not None else preset_tempo,
+        style=style,
+        dancer=dancer,
+        progress=progress,
+    )
+    return dance(choreography, quality, effort_name, kind, controller, progress=progress)
+
+
+def dance(
+    choreography: Choreography,
+    effort: Effort,
+    effort_name: str,
+    interpolation: Interpolation,
+    controller: str,
+    *,
+    progress: Progress = silent,
+) -> Performance:
+    """Move and, unless kinematic, physically perform a solved score; see `perform`."""
+    from enpointe.motion import interpolate
+
+    motion = interpolate(
+        choreography,
+        effort,
+        interpolation,
+        progress=lambda done, total: progress("movement", done, total),
+    )
+    recording = measures = None
+    if controller == "pd":
+        from enpointe.controllers import PD
+        from enpointe.controllers import perform as run
+        from enpointe.sim.body import SimulatedBody
+        from enpointe.sim.measures import measure
+
+        recording = run(
+            motion,
+            PD(motion),
+            SimulatedBody.at_start_of(motion),
+            progress=lambda done, total: progress("dance", done, total),
+        )
+        measures = measure(recording)
+    return Performance(
+        choreography,
+        effort,
+        effort_name,
+        interpolation,
+        controller,
+        motion,
+        recording,
+        measures,
+    )

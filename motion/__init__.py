@@ -1,0 +1,52 @@
+"""Movement in time: motions, effort, expressive interpolation and its baselines."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from enpointe.lazy import lazy
+
+if TYPE_CHECKING:
+    from enpointe.motion.effort import Effort as Effort
+    from enpointe.motion.effort import PRESETS as PRESETS
+    from enpointe.motion.effort import find_effort as find_effort
+    from enpointe.motion.effort import logistic as logistic
+    from enpointe.motion.interpolation import Choreography as Choreography
+    from enpointe.motion.kind import Interpolation as Interpolation
+    from enpointe.motion.interpolation import interpolate as interpolate
+    from enpointe.motion.interpolation import solve_key_poses as solve_key_poses
+    from enpointe.motion.motion import Event as Event
+    from enpointe.motion.motion import Motion as Motion
+    from enpointe.motion.wrist import fit_logistic as fit_logistic
+    from enpointe.motion.wrist import wrist_profiles as wrist_profiles
+
+_HOMES = {
+    "Choreography": "enpointe.motion.interpolation",
+    "Effort": "enpointe.motion.effort",
+    "Event": "enpointe.motion.motion",
+    "Interpolation": "enpointe.motion.kind",
+    "Motion": "enpointe.motion.motion",
+    "PRESETS": "enpointe.motion.effort",
+    "find_effort": "enpointe.motion.effort",
+    "fit_logistic": "enpointe.motion.wrist",
+    "interpolate": "enpointe.motion.interpolation",
+    "logistic": "enpointe.motion.effort",
+    "solve_key_poses": "enpointe.motion.interpolation",
+    "wrist_profiles": "enpointe.motion.wrist",
+}
+
+__all__ = [
+    "Choreography",
+    "Effort",
+    "Event",
+    "Interpolation",
+    "Motion",
+    "PRESETS",
+    "find_effort",
+    "fit_logistic",
+    "interpolate",
+    "logistic",
+    "solve_key_poses",
+    "wrist_profiles",
+]
+__getattr__, __dir__ = lazy(__name__, _HOMES)

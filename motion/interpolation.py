@@ -1,0 +1,184 @@
+"""From a score to a motion: expressive, or one of the two baselines it is compared with."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import convolve1d
+from scipy.signal.windows import parzen
+
+from enpointe.errors import MotionError
+from enpointe.models.keypose import KeyPose, KeyPoseSolver
+from enpointe.models.target import Style, pose_target
+from enpointe.motion.effort import Effort, logistic
+from enpointe.motion.inbetween import Passage, solve_passage
+from enpointe.motion.kind import Interpolation
+from enpointe.motion.motion import Event, Motion
+from enpointe.motion.slerp import slerp_poses
+from enpointe.notation import Score
+
+__all__ = ["Choreography", "interpolate", "solve_key_poses"]
+
+Array = NDArray[np.float64]
+Progress = Callable[[int, int], None]
+
+RATE = 250.0
+"""Samples a second."""
+COUNT_IN = 0.5
+"""Stillness before the first beat, s."""
+HOLD = 1.0
+"""Stillness after the last beat, s: a dance ends balanced, not falling out of its last pose."""
+ROUNDING = 0.12
+"""Width of the window that rounds the corners at key poses, s.
+
+The logistic arrives at a key pose with speed left (§5.5.2, figure 5.18) and leaves it in another
+direction from rest: an acceleration without bound, which no muscle has. Muscles take 40-60 ms to
+raise their force (electromechanical delay and activation time); the motion is averaged over a
+Parzen window whose effective width (twice its standard deviation) is that long.
+"""
+
+
+@dataclass(frozen=True)
+class Choreography:
+    """A score solved on a dancer: what every way of interpolating starts from.
+
+    Attributes:
+        score: What is danced.
+        solver: Of the dancer.
+        key_poses: One for each frame.
+        tempo: Pulses a minute.
+    """
+
+    score: Score
+    solver: KeyPoseSolver
+    key_poses: tuple[KeyPose, ...]
+    tempo: float
+
+    @property
+    def key_times(self) -> Array:
+        """When each key pose is reached, s from the start of the motion, (K,)."""
+        beats = [self.score.seconds(frame.beat, self.tempo) for frame in self.score.frames]
+        return COUNT_IN + np.array(beats)
+
+
+def solve_key_poses(
+    score: Score,
+    solver: KeyPoseSolver,
+    *,
+    style: Style | None = None,
+    tempo: float | None = None,
+    progress: Progress | None = None,
+) -> Choreography:
+    """Solve every frame of a score.
+
+    Args:
+        score: What is danced.
+        solver: Of the dancer.
+        style: The method's amounts.
+        tempo: Pulses a minute; the score's own if None.
+        progress: Called with (done, all).
+
+    Raises:
+        ScoreError: A sign out of reach, or a tempo that can't be danced.
+        PoseError: A frame without a pose.
+    """
+    frames = score.resolved()
+    score.duration(tempo)
+    targets = [
+        pose_target(frame, solver.figure, style, source=score.source) for frame in frames
+    ]
+    if len(targets) < 2:
+        raise MotionError(f"{score.title!r} has one frame; a motion needs two at least")
+    poses = []
+    for i, target in enumerate(targets):
+        poses.append(solver.solve(target))
+        if progress is not None:
+            progress(i + 1, len(targets))
+    return Choreography(score, solver, tuple(poses), tempo or score.tempo)
+
+
+def interpolate(
+    choreography: Choreography,
+    effort: Effort,
+    kind: Interpolation = Interpolation.EXPRESSIVE,
+    *,
+    progress: Progress | None = None,
+) -> Motion:
+    """Fill in the movement between the key poses.
+
+    Args:
+        choreography: The solved score.
+        effort: Quality of the movement.
+        kind: Expressive, or a baseline.
+        progress: Called with (done, all).
+
+    Returns:
+        A motion at `RATE`, with a count-in before the first beat and a hold after the last, and a
+        "key pose" event at each frame.
+    """
+    key_times = choreography.key_times
+    count = int(round((key_times[-1] + HOLD) * RATE)) + 1
+    time = np.arange(count) / RATE
+    model = choreography.solver.model
+    qpos = np.empty((count, model.nq))
+    poses = choreography.key_poses
+    qpos[:] = poses[0].qpos
+    curves = _Curves(choreography, effort, kind)
+    for i, (begin, end) in enumerate(zip(key_times[:-1], key_times[1:], strict=True)):
+        inside = (time >= begin) & (time <= end)
+        phase = (time[inside] - begin) / (end - begin)
+        share = phase if kind is Interpolation.SLERP else logistic(
+            phase, effort.time, effort.weight
+        )
+        qpos[inside] = curves(i)(share)
+        qpos[time > end] = poses[i + 1].qpos
+        if progress is not None:
+            progress(i + 1, len(poses) - 1)
+    if kind is not Interpolation.SLERP:
+        qpos = _round_corners(qpos)
+    events = [
+        Event(float(t), "key pose", pose.name, float(frame.beat))
+        for t, pose, frame in zip(key_times, poses, choreography.score.frames, strict=True)
+    ]
+    return Motion.from_qpos(
+        model, time, qpos, events=events, name=f"{choreography.score.title}, {kind.value}"
+    )
+
+
+class _Curves:
+    """The way between each pair of key poses; a repeated pair is solved once."""
+
+    def __init__(
+        self, choreography: Choreography, effort: Effort, kind: Interpolation
+    ) -> None:
+        self._choreography = choreography
+        self._kind = kind
+        direct = Effort(effort.time, effort.weight, 1.0)
+        self._effort = effort if kind is Interpolation.EXPRESSIVE else direct
+        self._known: dict[tuple[bytes, bytes], Callable[[Array], Array]] = {}
+
+    def __call__(self, index: int) -> Callable[[Array], Array]:
+        start, end = self._choreography.key_poses[index : index + 2]
+        key = (start.qpos.tobytes(), end.qpos.tobytes())
+        if key not in self._known:
+            self._known[key] = self._make(start, end)
+        return self._known[key]
+
+    def _make(self, start: KeyPose, end: KeyPose) -> Callable[[Array], Array]:
+        solver = self._choreography.solver
+        if self._kind is Interpolation.SLERP:
+            return lambda share: slerp_poses(solver.model, start.qpos, end.qpos, share)
+        inflect = self._kind is Interpolation.EXPRESSIVE
+        passage: Passage = solve_passage(solver, start, end, self._effort, inflect=inflect)
+        return passage.curve(solver.model)
+
+
+def _round_corners(qpos: Array) -> Array:
+    """Average over a Parzen window; quaternions nearly agree within it, so theirs is sound too."""
+    window = parzen(2 * int(ROUNDING * RATE / 2) + 1, sym=True)
+    smooth = convolve1d(qpos, window / window.sum(), axis=0, mode="nearest")
+    smooth[:, 3:7] /= np.linalg.norm(smooth[:, 3:7], axis=1, keepdims=True)
+    return np.asarray(smooth)

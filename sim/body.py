@@ -1,0 +1,160 @@
+"""The dancer on the simulated stage: gravity, contact, muscles with limits, and nothing else.
+
+No force acts on the root but gravity and the floor: the body applies joint torques only, and looks
+at every step that nobody else applied anything either.
+"""
+
+from __future__ import annotations
+
+import copy
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from enpointe.controllers import Command, State
+from enpointe.errors import BodyError
+from enpointe.motion import Motion
+from enpointe.sim.contacts import ContactReader
+
+__all__ = ["CONTROL_PERIOD", "SimulatedBody"]
+
+CONTROL_PERIOD = 0.002
+"""s between commands: 500 Hz."""
+FALLEN = 0.6
+"""A dancer whose centre of mass is below this share of its first height has fallen."""
+
+
+class SimulatedBody:
+    """A MuJoCo body as a `Body`.
+
+    Joints realise  tau = torque + K (position - q) + D (velocity - v)  as affine actuators within
+    the model's force ranges, so that the integrator takes the springs' and dampers' derivatives
+    into account (`implicitfast`).
+
+    Args:
+        model: The dancer; copied, never changed.
+        qpos: (nq,), where it starts.
+        qvel: (nv,), at rest if None.
+        period: s between commands, a multiple of the model's time step.
+
+    Raises:
+        BodyError: The period is no multiple of the time step, or the model has help a dancer must
+            not have (mocap bodies, equality constraints, disabled gravity or contact).
+    """
+
+    def __init__(
+        self,
+        model: mujoco.MjModel,
+        qpos: NDArray[np.float64],
+        qvel: NDArray[np.float64] | None = None,
+        *,
+        period: float = CONTROL_PERIOD,
+    ) -> None:
+        _refuse_help(model)
+        self._substeps = int(round(period / model.opt.timestep))
+        if self._substeps < 1 or abs(self._substeps * model.opt.timestep - period) > 1e-9:
+            raise BodyError(
+                f"the control period {period:g} s must be a multiple of the time step"
+                f" {model.opt.timestep:g} s"
+            )
+        self.period = period
+        self.fault: str | None = None
+        self.model = _with_affine_actuators(model)
+        self.data = mujoco.MjData(self.model)
+        self.data.qpos[:] = qpos
+        self.data.qvel[:] = 0.0 if qvel is None else qvel
+        mujoco.mj_forward(self.model, self.data)
+        self._first_com_height = float(self.data.subtree_com[0, 2])
+        self._contacts = ContactReader(self.model)
+        self._root_force = np.zeros(6)
+        self._fresh = np.zeros(self.model.nu)
+        self._valid = np.ones(self.model.nu, dtype=bool)
+
+    @classmethod
+    def at_start_of(cls, motion: Motion, *, period: float = CONTROL_PERIOD) -> SimulatedBody:
+        """A body standing in a motion's first pose, at rest."""
+        return cls(motion.model, motion.qpos[0], period=period)
+
+    def read(self) -> State:
+        """The state now; a simulated body knows all of it at once."""
+        return State(
+            time=float(self.data.time),
+            qpos=self.data.qpos.copy(),
+            qvel=self.data.qvel.copy(),
+            effort=self.data.actuator_force.copy(),
+            age=self._fresh,
+            valid=self._valid,
+        )
+
+    def write(self, command: Command) -> None:
+        """Take a command and let one period pass.
+
+        Raises:
+            BodyError: A command of the wrong shape, or with values that are not numbers.
+        """
+        self._check(command)
+        model, data = self.model, self.data
+        model.actuator_biasprm[:, 1] = -command.stiffness
+        model.actuator_biasprm[:, 2] = -command.damping
+        data.ctrl[:] = (
+            command.torque
+            + command.stiffness * command.position
+            + command.damping * command.velocity
+        )
+        self._root_force[:] = 0.0
+        for _ in range(self._substeps):
+            mujoco.mj_step(model, data)
+            np.maximum(self._root_force, np.abs(_help(data)), out=self._root_force)
+        self._contacts.read(data)
+        self._judge()
+
+    def observe(self) -> dict[str, NDArray[np.generic]]:
+        """Contacts and root force over the last period; see `ContactReader` for the shapes."""
+        return {
+            **self._contacts.observed(),
+            "com": self.data.subtree_com[0].copy(),
+            "root_force": self._root_force.copy(),
+        }
+
+    def _check(self, command: Command) -> None:
+        for name in ("position", "velocity", "torque", "stiffness", "damping"):
+            value = getattr(command, name)
+            if value.shape != (self.model.nu,):
+                raise BodyError(
+                    f"command {name} must have shape ({self.model.nu},), got {value.shape}"
+                )
+            if not np.all(np.isfinite(value)):
+                raise BodyError(f"command {name} has values that are not numbers")
+
+    def _judge(self) -> None:
+        # MuJoCo resets a diverged simulation to its first state and leaves a warning behind.
+        bad = (mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL,
+               mujoco.mjtWarning.mjWARN_BADQACC)
+        if any(self.data.warning[w].number for w in bad):
+            self.fault = "the simulation diverged"
+        elif self.data.subtree_com[0, 2] < FALLEN * self._first_com_height:
+            self.fault = "fell"
+
+
+def _help(data: mujoco.MjData) -> NDArray[np.float64]:
+    """Force and moment on the root from anything but gravity, floor and the dancer's own limbs."""
+    direct = data.qfrc_applied[:6] + data.qfrc_actuator[:6]
+    pulls = data.xfrc_applied.sum(axis=0)
+    return np.asarray(np.abs(direct) + np.abs(pulls))
+
+
+def _refuse_help(model: mujoco.MjModel) -> None:
+    if model.nmocap or model.neq:
+        raise BodyError("a dancer has no mocap bodies and no equality constraints to hold on to")
+    forbidden = mujoco.mjtDisableBit.mjDSBL_GRAVITY | mujoco.mjtDisableBit.mjDSBL_CONTACT
+    if model.opt.disableflags & forbidden or model.opt.gravity[2] >= 0:
+        raise BodyError("gravity and contact must be on; this stage has no others")
+
+
+def _with_affine_actuators(model: mujoco.MjModel) -> mujoco.MjModel:
+    """A copy whose torque sources take stiffness and damping with each command."""
+    own = copy.copy(model)
+    own.actuator_biastype[:] = mujoco.mjtBias.mjBIAS_AFFINE
+    own.actuator_ctrllimited[:] = 0
+    return own

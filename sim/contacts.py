@@ -1,0 +1,79 @@
+"""Reading contacts off a simulation: forces and places of the soles, and whatever else touched."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from enpointe.controllers.plant import Plant
+
+__all__ = ["ContactReader"]
+
+
+class ContactReader:
+    """Contact forces of the last step.
+
+    MuJoCo's contact list and its forces belong together only right after `mj_step`; read then.
+
+    Args:
+        model: With a floor plane and sole spheres.
+    """
+
+    def __init__(self, model: mujoco.MjModel) -> None:
+        self._model = model
+        self.soles = Plant(model).sole_geoms
+        self._row = {int(geom): i for i, geom in enumerate(self.soles)}
+        self._floors = set(
+            np.flatnonzero(model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE).tolist()
+        )
+        self._force = np.zeros((len(self.soles), 3))
+        self._point = np.zeros((len(self.soles), 3))
+        self._depth = np.zeros(len(self.soles))
+        self._others = 0
+        self._other_force = 0.0
+
+    def read(self, data: mujoco.MjData) -> None:
+        """Take the contacts of `data`, right after a step."""
+        self._force[:] = 0.0
+        self._depth[:] = 0.0
+        self._point[:] = data.geom_xpos[self.soles]
+        self._point[:, 2] -= self._model.geom_size[self.soles, 0]
+        self._others, self._other_force = 0, 0.0
+        wrench = np.zeros(6)
+        for i in range(data.ncon):
+            contact = data.contact[i]
+            mujoco.mj_contactForce(self._model, data, i, wrench)
+            row = self._sole_row(contact)
+            if row is None:
+                self._others += int(wrench[0] > 0.0)
+                self._other_force = max(self._other_force, float(np.linalg.norm(wrench[:3])))
+                continue
+            # The contact frame's first axis points from the first geom to the second.
+            sign = 1.0 if contact.geom1 in self._floors else -1.0
+            self._force[row] += sign * contact.frame.reshape(3, 3).T @ wrench[:3]
+            self._depth[row] = max(-contact.dist, 0.0)
+
+    def observed(self) -> dict[str, NDArray[np.generic]]:
+        """Channels of one sample.
+
+        Returns:
+            sole_force (S, 3) N on each sole; sole_point (S, 3) m, its lowest point; sole_depth (S,)
+            m into the floor; other_contacts, how many contacts bore force that were no sole on the
+            floor; other_force, the largest of them, N.
+        """
+        return {
+            "sole_force": self._force.copy(),
+            "sole_point": self._point.copy(),
+            "sole_depth": self._depth.copy(),
+            "other_contacts": np.array(self._others),
+            "other_force": np.array(self._other_force),
+        }
+
+    def _sole_row(self, contact: mujoco._structs._MjContactList) -> int | None:
+        first, second = int(contact.geom1), int(contact.geom2)
+        if first in self._floors:
+            return self._row.get(second)
+        if second in self._floors:
+            return self._row.get(first)
+        return None

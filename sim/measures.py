@@ -1,0 +1,167 @@
+"""The figures of a performance, as a report prints them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from enpointe.controllers import Recording
+from enpointe.controllers.plant import Plant
+from enpointe.sim import balance
+
+__all__ = ["Flight", "Measures", "measure"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Flight:
+    """A time without any contact.
+
+    Attributes:
+        start: s.
+        end: s.
+        height: Rise of the centre of mass above where it left, m.
+        turn_deg: Turn of the pelvis about the vertical meanwhile, degrees.
+    """
+
+    start: float
+    end: float
+    height: float
+    turn_deg: float
+
+
+@dataclass(frozen=True)
+class Measures:
+    """What came of a performance; N samples, F feet of S soles, nu joints.
+
+    Attributes:
+        com: (N, 3), m.
+        cop: (N, 2), m, not-a-number in the air.
+        margin: (N,), CoM to the edge of the support, m, positive inside.
+        foot_force: (N, 2), vertical force under the left and the right foot, N.
+        slip: (N,), farthest that any loaded sole has slid, m.
+        error: (N, nu), joints behind their reference, rad.
+        torque_fraction: (N, nu), torque given over torque limit.
+        flights: In order.
+        fell_at: s, or None.
+        root_force_max: N.
+        other_contact_max: Largest force of a contact that was no sole on the floor, N.
+    """
+
+    com: Array
+    cop: Array
+    margin: Array
+    foot_force: Array
+    slip: Array
+    error: Array
+    torque_fraction: Array
+    flights: tuple[Flight, ...]
+    fell_at: float | None
+    root_force_max: float
+    other_contact_max: float
+
+    @property
+    def tracking_rms_deg(self) -> float:
+        """Root mean square over all joints and samples."""
+        return float(np.degrees(np.sqrt(np.mean(self.error**2))))
+
+    @property
+    def joint_rms_deg(self) -> Array:
+        """(nu,)."""
+        return np.asarray(np.degrees(np.sqrt(np.mean(self.error**2, axis=0))))
+
+    @property
+    def support_margin_min(self) -> float | None:
+        """Least margin while anything bears weight, m; None if nothing ever does."""
+        standing = self.margin[np.isfinite(self.margin)]
+        return float(standing.min()) if len(standing) else None
+
+    @property
+    def slip_max(self) -> float:
+        """m."""
+        return float(self.slip.max())
+
+    @property
+    def torque_limit_fraction_max(self) -> float:
+        return float(self.torque_fraction.max())
+
+
+def measure(recording: Recording) -> Measures:
+    """Measure a simulated performance.
+
+    Args:
+        recording: With the channels that `SimulatedBody` observes.
+    """
+    channels = recording.channels
+    points = np.asarray(channels["sole_point"], dtype=float)
+    forces = np.asarray(channels["sole_force"], dtype=float)
+    com = np.asarray(channels["com"], dtype=float)
+    margins = np.array(
+        [
+            balance.margin(balance.support(p, f), c[:2])
+            for p, f, c in zip(points, forces, com, strict=True)
+        ]
+    )
+    cop = np.array(
+        [balance.centre_of_pressure(p, f) for p, f in zip(points, forces, strict=True)]
+    )
+    limit = recording.model.actuator_forcerange[:, 1]
+    fell = recording.fault is not None
+    return Measures(
+        com=com,
+        cop=cop,
+        margin=margins,
+        foot_force=_foot_forces(recording.model, forces),
+        slip=balance.slip(points, forces).max(axis=1),
+        error=_joint_error(recording),
+        torque_fraction=np.abs(recording.effort) / limit,
+        flights=_flights(recording, forces, com),
+        fell_at=float(recording.time[-1]) if fell else None,
+        root_force_max=float(np.max(channels["root_force"])),
+        other_contact_max=float(np.max(channels["other_force"])),
+    )
+
+
+def _foot_forces(model: mujoco.MjModel, forces: Array) -> Array:
+    """Vertical force by foot, left then right; soles stand in the order of their names' geoms."""
+    names = [model.geom(int(g)).name for g in Plant(model).sole_geoms]
+    left = np.array([name.startswith("left") for name in names])
+    return np.stack([forces[:, left, 2].sum(1), forces[:, ~left, 2].sum(1)], axis=1)
+
+
+def _joint_error(recording: Recording) -> Array:
+    joints = recording.model.jnt_qposadr[recording.model.actuator_trnid[:, 0]]
+    wanted = np.array([recording.reference.sample(float(t))[0][joints] for t in recording.time])
+    return np.asarray(recording.qpos[:, joints] - wanted)
+
+
+def _flights(recording: Recording, forces: Array, com: Array) -> tuple[Flight, ...]:
+    aloft = forces[:, :, 2].sum(axis=1) <= balance.LOADED
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], aloft, [False]]).astype(int)))
+    flights = []
+    for start, end in zip(edges[::2], edges[1::2], strict=True):
+        if (end - start) * recording.period < MIN_FLIGHT:
+            continue
+        yaw = np.unwrap([_yaw(q) for q in recording.qpos[start:end, 3:7]])
+        flights.append(
+            Flight(
+                float(recording.time[start]),
+                float(recording.time[end - 1]),
+                float(com[start:end, 2].max() - com[start, 2]),
+                float(np.degrees(yaw[-1] - yaw[0])),
+            )
+        )
+    return tuple(flights)
+
+
+MIN_FLIGHT = 0.02
+"""Shorter times in the air are a rattle of the contact, not a jump, s."""
+
+
+def _yaw(quaternion: Array) -> float:
+    w, x, y, z = quaternion
+    return float(np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)))
