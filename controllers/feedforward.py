@@ -78,9 +78,7 @@ def floor_forces(plant: Plant, wrench: Array) -> tuple[Array, Array]:
     geoms = plant.soles_on_floor()
     if len(geoms) == 0:
         return np.zeros(plant.model.nv), wrench
-    edges = np.array(
-        [[FRICTION, 0, 1], [-FRICTION, 0, 1], [0, FRICTION, 1], [0, -FRICTION, 1]]
-    )
+    edges = np.array([[FRICTION, 0, 1], [-FRICTION, 0, 1], [0, FRICTION, 1], [0, -FRICTION, 1]])
     jacobians = plant.contact_jacobians(geoms)
     spread = np.einsum("ec,scv->sev", edges, jacobians).reshape(-1, plant.model.nv)
     matrix = np.vstack([spread[:, :6].T, _REGULARISATION * np.eye(len(spread))])

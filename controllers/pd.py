@@ -1,4 +1,4 @@
-"""Proportional-derivative tracking of a motion, with the torques that the motion needs fed forward."""
+"""Proportional-derivative tracking of a motion, with the torques it needs fed forward."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ def perform(
     start = perf_counter()
     state = body.read()
     controller.reset(state)
-    steps = int(round(motion.duration / body.period))
+    steps = round(motion.duration / body.period)
     for k in range(steps):
         command = controller.command(k * body.period, state)
         body.write(command)
@@ -69,9 +69,7 @@ class _Tape:
         self._commands: list[Command] = []
         self._observed: dict[str, list[NDArray[np.generic]]] = {}
 
-    def add(
-        self, state: State, command: Command, observed: dict[str, NDArray[np.generic]]
-    ) -> None:
+    def add(self, state: State, command: Command, observed: dict[str, NDArray[np.generic]]) -> None:
         self._states.append(state)
         self._commands.append(command)
         for name, value in observed.items():

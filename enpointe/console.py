@@ -55,9 +55,7 @@ class Console:
 
             yield show
 
-    def show(
-        self, figures: Mapping[str, object], files: Mapping[str, Path], folder: Path
-    ) -> None:
+    def show(self, figures: Mapping[str, object], files: Mapping[str, Path], folder: Path) -> None:
         """The figures of a job and what it wrote."""
         if self._json:
             paths = {name: str(path) for name, path in files.items()}

@@ -70,7 +70,7 @@ class MotionError(EnpointeError):
 
 
 class BodyError(EnpointeError):
-    """A body that can't do what the controller asks (wrong shapes, not-a-number, diverged physics)."""
+    """A body that can't do what the controller asks (wrong shapes, values that are no numbers)."""
 
 
 class RenderError(EnpointeError):

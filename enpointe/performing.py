@@ -70,9 +70,7 @@ class Performance:
     def broken(self) -> tuple[tuple[KeyPose, str], ...]:
         """Key poses whose certificate has a broken rule, with the certificate in words."""
         return tuple(
-            (pose, str(pose.certificate))
-            for pose in self.choreography.key_poses
-            if not pose.held
+            (pose, str(pose.certificate)) for pose in self.choreography.key_poses if not pose.held
         )
 
     def asked_fit(self) -> LogisticFit | None:
@@ -88,7 +86,7 @@ class Performance:
         return fit_logistic(wrist_profiles(self.danced))
 
     def save(self, folder: Path) -> dict[str, Path]:
-        """Write `motion.npz` and, of a physical performance, `recording.npz`; returns their paths."""
+        """Write `motion.npz` and, of a physical performance, `recording.npz`; returns paths."""
         from enpointe.motion.npz import save_motion
 
         files = {"motion": folder / "motion.npz"}
@@ -115,9 +113,7 @@ class Performance:
             "completed": self.completed,
             "duration": danced.duration,
             "rules_broken": [f"{pose.name}: {words}" for pose, words in self.broken],
-            "logistic": None
-            if fit is None
-            else {"b": fit.time, "x0": fit.weight, "rms": fit.rms},
+            "logistic": None if fit is None else {"b": fit.time, "x0": fit.weight, "rms": fit.rms},
         }
         if self.recording is not None and self.measures is not None:
             figures |= _physical_figures(self.recording, self.measures)

@@ -1,4 +1,4 @@
-"""Who dances: the dancer's body, its kinematics in CasADi, the rules of ballet and the pose solver."""
+"""Who dances: the body, its kinematics in CasADi, the rules of ballet, the key-pose solver."""
 
 from __future__ import annotations
 

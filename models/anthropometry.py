@@ -78,9 +78,7 @@ _MALE: Mapping[str, _Row] = MappingProxyType(
         "foot": (258.1, 1.37, 44.15, 25.7, 24.5, 12.4),
     }
 )
-_TABLE: Mapping[Sex, Mapping[str, _Row]] = MappingProxyType(
-    {Sex.FEMALE: _FEMALE, Sex.MALE: _MALE}
-)
+_TABLE: Mapping[Sex, Mapping[str, _Row]] = MappingProxyType({Sex.FEMALE: _FEMALE, Sex.MALE: _MALE})
 _MEAN_STATURE: Mapping[Sex, float] = MappingProxyType({Sex.FEMALE: 1.735, Sex.MALE: 1.741})
 _PAIRED = ("upper_arm", "forearm", "hand", "thigh", "shank", "foot")
 

@@ -18,7 +18,7 @@ SOLE_CLASS = 2
 _FLOOR_CLASS, _LIMB_CLASS = 1, 4
 COLLISION_GROUP = 3
 FRICTION = (1.0, 0.005, 0.0001)
-"""Sliding friction 1: a dry studio floor (marley) under canvas shoes; a parameter, not a finding."""
+"""Sliding friction 1: a dry studio floor under canvas shoes; a parameter, not a finding."""
 # Softer contacts lost one-foot demi-pointe in trials; these are a hard floor's.
 _SOLREF = (0.01, 1.0)
 _SOLIMP = (0.95, 0.99, 0.001, 0.5, 2.0)

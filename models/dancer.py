@@ -25,9 +25,7 @@ TIMESTEP = 0.001
 """Physics step, s. With light hands and toes, PD torques need 1 ms (see docs/physics.md)."""
 
 
-def build_dancer(
-    measures: Anthropometry | None = None, *, flesh: bool = True
-) -> mujoco.MjModel:
+def build_dancer(measures: Anthropometry | None = None, *, flesh: bool = True) -> mujoco.MjModel:
     """Compile the dancer.
 
     Args:
@@ -41,9 +39,7 @@ def build_dancer(
 
 
 @lru_cache(maxsize=4)
-def dancer_model(
-    measures: Anthropometry | None = None, *, flesh: bool = True
-) -> mujoco.MjModel:
+def dancer_model(measures: Anthropometry | None = None, *, flesh: bool = True) -> mujoco.MjModel:
     """The same dancer, compiled once a process. Treat it as read-only; copy it to change it."""
     return build_dancer(measures, flesh=flesh)
 
@@ -178,15 +174,15 @@ def _add_leg(pelvis: mujoco.MjsBody, skeleton: Skeleton, side: str) -> None:
     foot.add_site(group=SITE_GROUP, name=f"{side}_heel", pos=[-skeleton.heel_back, 0, sole])
     foot.add_site(group=SITE_GROUP, name=f"{side}_ball", pos=[skeleton.ball_forward, 0, sole])
 
-    toe = foot.add_body(
-        name=f"{side}_toe", pos=[skeleton.ball_forward, 0, sole + SOLE_RADIUS]
-    )
+    toe = foot.add_body(name=f"{side}_toe", pos=[skeleton.ball_forward, 0, sole + SOLE_RADIUS])
     _add_hinges(toe, anatomy.TOE, side)
     mass = segment.mass * TOE_MASS_SHARE
     size = np.array([skeleton.toe_length, 2 * skeleton.ball_half_breadth, 0.025])
     box = mass / 12 * (np.sum(size**2) - size**2)
     _set_explicit(toe, mass, (0.5 * skeleton.toe_length, 0, 0.003), tuple(box))
-    toe.add_site(group=SITE_GROUP, name=f"{side}_toe_tip", pos=[skeleton.toe_length, 0, -SOLE_RADIUS])
+    toe.add_site(
+        group=SITE_GROUP, name=f"{side}_toe_tip", pos=[skeleton.toe_length, 0, -SOLE_RADIUS]
+    )
 
 
 TOE_MASS_SHARE = 0.15
@@ -208,9 +204,7 @@ def _add_hinges(body: mujoco.MjsBody, hinges: Iterable[Hinge], side: str | None)
         )
 
 
-def _set_inertia(
-    body: mujoco.MjsBody, segment: Segment, com: tuple[float, float, float]
-) -> None:
+def _set_inertia(body: mujoco.MjsBody, segment: Segment, com: tuple[float, float, float]) -> None:
     _set_explicit(body, segment.mass, com, segment.inertia)
 
 

@@ -75,9 +75,7 @@ def extremity(
     return np.array([centre[0] + ahead * sqrt(max(beyond, 0.0)), y, z])
 
 
-def _check_reach(
-    beyond: float, length: float, sign: Sign, leg: bool, source: str | None
-) -> None:
+def _check_reach(beyond: float, length: float, sign: Sign, leg: bool, source: str | None) -> None:
     if beyond >= -2 * _GRAZE * length:
         return
     limb, joint = ("leg", "hip") if leg else ("arm", "shoulder")

@@ -91,9 +91,7 @@ class Figure:
             shoulder = site("left_shoulder")[2]
             upper_lines = (shoulder, site("crown")[2], shoulder + upper_arm + forearm)
             waist = float(torso[2])
-            ball_spheres = [
-                model.geom(f"left_ball_{edge}") for edge in ("inner", "outer")
-            ]
+            ball_spheres = [model.geom(f"left_ball_{edge}") for edge in ("inner", "outer")]
         except KeyError as error:
             raise ModelError(f"this model is not a dancer's: {error}") from None
         return cls(
@@ -139,7 +137,7 @@ class Figure:
         return self.heel_back + self.ball_forward + self.toe_length
 
     def arm_reach(self, elbow_bend: float) -> float:
-        """Shoulder to wrist with the elbow bent by `elbow_bend` radians (eq. 4.5, theta = pi - bend)."""
+        """Shoulder to wrist, the elbow bent by `elbow_bend` radians (eq. 4.5 with pi - bend)."""
         return _third_side(self.upper_arm, self.forearm, elbow_bend)
 
     @property

@@ -140,7 +140,13 @@ _FOOT = (
     (0.94, 0.018, 0.040),
     (1.06, 0.014, 0.039),
 )
-_TOES = ((-0.20, 0.012, 0.036), (0.05, 0.014, 0.039), (0.5, 0.012, 0.035), (0.9, 0.010, 0.022), (1.0, 0.006, 0.012))
+_TOES = (
+    (-0.20, 0.012, 0.036),
+    (0.05, 0.014, 0.039),
+    (0.5, 0.012, 0.035),
+    (0.9, 0.010, 0.022),
+    (1.0, 0.006, 0.012),
+)
 # Ballet hand: index long, middle finger towards the thumb, little finger just parted.
 # Base, middle joint and tip: forward (thumb side), towards the palm, down; m.
 _FINGERS = {
@@ -206,8 +212,13 @@ class _Tailor:
         skeleton = self._skeleton
         self._hanging_loft(f"{side}_upper_arm", _UPPER_ARM, skeleton.upper_arm, "skin")
         self._hanging_loft(f"{side}_forearm", _FOREARM, skeleton.forearm, "skin")
-        palm = ((-0.1, 0.020, 0.015, 0.0), (0.15, 0.024, 0.016, 0.002), (0.6, 0.035, 0.014, 0.0),
-                (0.95, 0.035, 0.010, 0.0), (1.06, 0.028, 0.007, 0.0))
+        palm = (
+            (-0.1, 0.020, 0.015, 0.0),
+            (0.15, 0.024, 0.016, 0.002),
+            (0.6, 0.035, 0.014, 0.0),
+            (0.95, 0.035, 0.010, 0.0),
+            (1.06, 0.028, 0.007, 0.0),
+        )
         self._hanging_loft(f"{side}_hand", palm, 0.082 * self._size, "skin")
         inward = -side_sign(side)
         for finger, joints in _FINGERS.items():
@@ -223,7 +234,9 @@ class _Tailor:
         length = skeleton.heel_back + skeleton.ball_forward
         self._sole_loft(f"{side}_foot", _FOOT, -skeleton.heel_back, length, sole)
         self._sole_loft(f"{side}_toe", _TOES, 0.0, skeleton.toe_length, -0.012)
-        self._ellipsoid(f"{side}_foot", f"{side}_instep", (0, 0, 0), (0.034, 0.030, 0.036), "tights")
+        self._ellipsoid(
+            f"{side}_foot", f"{side}_instep", (0, 0, 0), (0.034, 0.030, 0.036), "tights"
+        )
 
     def _standing_loft(
         self, body: str, name: str, profile: _Profile, material: str, stretch: float = 1.0
@@ -258,9 +271,7 @@ class _Tailor:
         ]
         self._mesh(body, f"{body}_flesh", rings, "x", "shoes")
 
-    def _mesh(
-        self, body: str, name: str, rings: Sequence[Ring], axis: str, material: str
-    ) -> None:
+    def _mesh(self, body: str, name: str, rings: Sequence[Ring], axis: str, material: str) -> None:
         vertices, faces = loft(rings, axis)
         self._spec.add_mesh(
             name=name, uservert=vertices.ravel(), userface=faces.ravel(), smoothnormal=True

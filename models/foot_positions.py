@@ -42,9 +42,10 @@ class Footprint:
     direction: float
 
     def point(self, forward: float, left: float = 0.0) -> NDArray[np.float64]:
-        """A point of the sole, `forward` and `left` of the ankle in the foot's own frame, (2,), m."""
+        """A point of the sole, (2,), m, `forward` and `left` of the ankle in the foot's frame."""
         c, s = cos(self.direction), sin(self.direction)
-        return self.ankle + np.array([c * forward - s * left, s * forward + c * left])
+        offset = np.array([c * forward - s * left, s * forward + c * left])
+        return np.asarray(self.ankle + offset)
 
     def sole(self, figure: Figure) -> NDArray[np.float64]:
         """Corners of the sole: heel, ball and toe tip, two of each, (6, 2), m."""
@@ -137,4 +138,3 @@ def support_hull(points: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _turn(o: tuple[float, float], a: tuple[float, float], b: tuple[float, float]) -> float:
     return (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0])
-

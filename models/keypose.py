@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from time import perf_counter
+from typing import Any
 
 import casadi as ca
 import mujoco
@@ -34,7 +35,7 @@ __all__ = ["KeyPose", "KeyPoseSolver", "PoseProblem"]
 
 _RANGE_MARGIN = np.radians(0.5)
 _POSTURE_WEIGHT = 1e-3
-_IPOPT = {
+_IPOPT: dict[str, Any] = {
     "ipopt.print_level": 0,
     "ipopt.sb": "yes",
     "ipopt.max_iter": 200,
@@ -112,7 +113,7 @@ class PoseProblem:
             "rules", [self.unknowns, parameters], [ca.vertcat(*residuals.values())]
         )
         self._slices = _slices([r.numel() for r in residuals.values()])
-        problem = {
+        problem: dict[str, ca.SX] = {
             "x": self.unknowns,
             "p": parameters,
             "f": self.cost,
@@ -201,12 +202,12 @@ class KeyPoseSolver:
         parameters = problem.parameters(target)
         start = perf_counter()
         seed = differential_ik(self.model, target) if guess is None else guess
-        unknowns, iterations = problem.solve(
-            _tangent(seed), parameters, self._lower, self._upper
-        )
+        unknowns, iterations = problem.solve(_tangent(seed), parameters, self._lower, self._upper)
         elapsed = 1e3 * (perf_counter() - start)
         if not np.all(np.isfinite(unknowns)):
-            raise PoseError(f"{target.name}: no pose was found; the signs may contradict each other")
+            raise PoseError(
+                f"{target.name}: no pose was found; the signs may contradict each other"
+            )
         return KeyPose(
             name=target.name,
             qpos=_qpos(unknowns),

@@ -115,10 +115,14 @@ def qpos_from_tangent(model: mujoco.MjModel, tangent: ca.SX) -> ca.SX:
     """
     kinds = [int(k) for k in model.jnt_type]
     scalar = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
-    if not kinds or kinds[0] != int(mujoco.mjtJoint.mjJNT_FREE) or any(
-        k not in scalar for k in kinds[1:]
+    if (
+        not kinds
+        or kinds[0] != int(mujoco.mjtJoint.mjJNT_FREE)
+        or any(k not in scalar for k in kinds[1:])
     ):
-        raise ModelError("the key-pose solver needs a model with one free root and hinges or slides")
+        raise ModelError(
+            "the key-pose solver needs a model with one free root and hinges or slides"
+        )
     vector = tangent[3:6]
     angle = ca.sqrt(ca.sumsqr(vector) + 1e-20)
     quaternion = ca.vertcat(ca.cos(angle / 2), ca.sin(angle / 2) / angle * vector)
@@ -174,7 +178,9 @@ def _axis_rotation(axis: NDArray[np.float64], angle: ca.SX) -> ca.SX:
     x, y, z = (float(v) for v in axis)
     skew = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     sine, versine = ca.sin(angle), 1 - ca.cos(angle)
-    return ca.SX.eye(3) + sine * ca.sparsify(ca.DM(skew)) + versine * ca.sparsify(ca.DM(skew @ skew))
+    return (
+        ca.SX.eye(3) + sine * ca.sparsify(ca.DM(skew)) + versine * ca.sparsify(ca.DM(skew @ skew))
+    )
 
 
 def _constant_rotation(quaternion: NDArray[np.float64]) -> ca.DM:

@@ -73,17 +73,15 @@ def starting_pose(model: mujoco.MjModel, target: PoseTarget) -> NDArray[np.float
 _HINGES = ("turn", "tilt", "bend")
 
 
-def ik_tasks(model: mujoco.MjModel, target: PoseTarget) -> list[mink.BaseTask]:
+def ik_tasks(model: mujoco.MjModel, target: PoseTarget) -> list[mink.Task]:
     """The target as mink tasks: feet, wrists and elbows, pelvis, centre of mass, posture."""
     posture = mink.PostureTask(model, cost=_posture_cost(model))
     posture.set_target(starting_pose(model, target))
     com = mink.ComTask(cost=[2.0, 2.0, 0.0])
     com.set_target(np.array([*centroid(target.support), 0.9]))
     pelvis = mink.FrameTask("pelvis", "body", position_cost=0.0, orientation_cost=0.5)
-    pelvis.set_target(
-        mink.SE3.from_rotation(mink.SO3.from_matrix(turn_tilt_bend(target.pelvis)))
-    )
-    tasks: list[mink.BaseTask] = [posture, com, pelvis]
+    pelvis.set_target(mink.SE3.from_rotation(mink.SO3.from_matrix(turn_tilt_bend(target.pelvis))))
+    tasks: list[mink.Task] = [posture, com, pelvis]
     for side in Side:
         arm = target.arms[side]
         tasks.append(_point_task(f"{side}_wrist", "torso", arm.wrist, 10.0))
@@ -92,8 +90,8 @@ def ik_tasks(model: mujoco.MjModel, target: PoseTarget) -> list[mink.BaseTask]:
     return tasks
 
 
-def _leg_tasks(leg: LegTarget, side: Side, ankle_height: float) -> list[mink.BaseTask]:
-    tasks: list[mink.BaseTask] = []
+def _leg_tasks(leg: LegTarget, side: Side, ankle_height: float) -> list[mink.Task]:
+    tasks: list[mink.Task] = []
     if leg.footprint is not None:
         foot = mink.FrameTask(f"{side}_foot", "body", position_cost=10.0, orientation_cost=5.0)
         rotation = mink.SO3.from_z_radians(leg.footprint.direction)

@@ -1,4 +1,4 @@
-"""What one frame of a score asks of a body, in metres and radians: the input of the key-pose solver."""
+"""What one frame of a score asks of a body, in metres and radians."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Style:
         wrist_deg: Bend of the wrist of a rounded arm. The thesis bends it as much as the elbow
             (§4.4.4); on a hand with fingers, which carry the curve on, that breaks the line, so
             ours is less.
-        palm_deg: Turn of the forearm from thumb-forward towards the palm that faces along the curve.
+        palm_deg: Turn of the forearm from thumb-forward to the palm that faces along the curve.
             The thesis turns 90 (§4.4.4) and finds it more than its dancers' (§4.5.3 b); 80 is the
             supination of adults (AAOS).
     """
@@ -191,9 +191,7 @@ def _arm(
 ) -> ArmTarget:
     if signs.elbow is not None:
         elbow = extremity(figure, side, signs.elbow, figure.upper_arm, source=source)
-        wrist = extremity(
-            figure, side, signs.wrist, figure.forearm, root=elbow, source=source
-        )
+        wrist = extremity(figure, side, signs.wrist, figure.forearm, root=elbow, source=source)
         palm = radians(style.palm_deg)
         shoulder = figure.shoulders[side]
         return ArmTarget(ArmShape.WRITTEN, shoulder, wrist, elbow, forearm_turn=palm)
@@ -230,9 +228,7 @@ def _legs(
             legs[side] = LegTarget(foot, None, knee, turnout)
         else:
             reach = figure.stretched_leg if knee is None else figure.shank
-            ankle = extremity(
-                figure, side, sign, reach, leg=True, root=knee, source=source
-            )
+            ankle = extremity(figure, side, sign, reach, leg=True, root=knee, source=source)
             legs[side] = LegTarget(None, ankle, knee, turnout)
     return legs
 

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 from enpointe.lazy import lazy
 
 if TYPE_CHECKING:
-    from enpointe.motion.effort import Effort as Effort
     from enpointe.motion.effort import PRESETS as PRESETS
+    from enpointe.motion.effort import Effort as Effort
     from enpointe.motion.effort import find_effort as find_effort
     from enpointe.motion.effort import logistic as logistic
     from enpointe.motion.interpolation import Choreography as Choreography
-    from enpointe.motion.kind import Interpolation as Interpolation
     from enpointe.motion.interpolation import interpolate as interpolate
     from enpointe.motion.interpolation import solve_key_poses as solve_key_poses
+    from enpointe.motion.kind import Interpolation as Interpolation
     from enpointe.motion.motion import Event as Event
     from enpointe.motion.motion import Motion as Motion
     from enpointe.motion.wrist import fit_logistic as fit_logistic
@@ -36,12 +36,12 @@ _HOMES = {
 }
 
 __all__ = [
+    "PRESETS",
     "Choreography",
     "Effort",
     "Event",
     "Interpolation",
     "Motion",
-    "PRESETS",
     "find_effort",
     "fit_logistic",
     "interpolate",

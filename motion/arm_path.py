@@ -1,4 +1,4 @@
-"""The way of a wrist from one key pose to the next, as the rules of ballet and Laban's space draw it.
+"""The way of a wrist between two key poses, as the rules of ballet and Laban's space draw it.
 
 Neagle 2005 §5.2.1, §5.4.4.5, §5.5.3. A path is measured in the torso's frame about the shoulder:
 

@@ -153,17 +153,17 @@ def logistic(t: ArrayLike, time: float, weight: float) -> NDArray[np.float64]:
         time: Gradient b < 0.
         weight: Centroid x0 > 0.
     """
-    t = np.clip(np.asarray(t, dtype=float), 0.0, 1.0)
+    phase: NDArray[np.float64] = np.clip(np.asarray(t, dtype=float), 0.0, 1.0)
     # With c = -b > 0 the same curve without a division by zero at t = 0.
     c = -time
-    grown = t**c
+    grown = phase**c
     return np.asarray(grown * (1.0 + weight**c) / (grown + weight**c))
 
 
 def logistic_rate(t: ArrayLike, time: float, weight: float) -> NDArray[np.float64]:
     """dy/dt of `logistic`, 0 outside [0, 1]."""
-    t = np.asarray(t, dtype=float)
-    inside = np.clip(t, 0.0, 1.0)
+    phase = np.asarray(t, dtype=float)
+    inside: NDArray[np.float64] = np.clip(phase, 0.0, 1.0)
     c = -time
     rate = (1.0 + weight**c) * c * weight**c * inside ** (c - 1) / (inside**c + weight**c) ** 2
-    return np.where((t < 0) | (t > 1), 0.0, rate)
+    return np.where((phase < 0) | (phase > 1), 0.0, rate)

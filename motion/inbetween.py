@@ -85,13 +85,12 @@ def solve_passage(
         inflect: Let the wrists trail; False for the plain path.
     """
     paths = {
-        side: ArmPath(solver.figure, side, start.target.arms[side], end.target.arms[side],
-                      effort.space)
+        side: ArmPath(
+            solver.figure, side, start.target.arms[side], end.target.arms[side], effort.space
+        )
         for side in Side
     }
-    legs_stay = all(
-        _same_stance(start.target.legs[side], end.target.legs[side]) for side in Side
-    )
+    legs_stay = all(_same_stance(start.target.legs[side], end.target.legs[side]) for side in Side)
     between: list[KeyPose] = []
     guess = start.qpos
     for step in range(1, INTERMEDIATE + 1):

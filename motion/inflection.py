@@ -48,9 +48,7 @@ def inflected(
     return float(np.clip(bend, -_BEND_LIMIT, _BEND_LIMIT)), float(np.clip(cross, *_CROSS_LIMIT))
 
 
-def _hand_axes(
-    arm: ArmTarget, side: Side
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _hand_axes(arm: ArmTarget, side: Side) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Where palm and thumb face: with the forearm unturned along the elbow's hinge and into its
     crook, and turned about the forearm from there. Zeros for a straight arm, which has no hinge."""
     upper, along = arm.elbow - arm.shoulder, arm.wrist - arm.elbow

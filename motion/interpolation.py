@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,9 +88,7 @@ def solve_key_poses(
     """
     frames = score.resolved()
     score.duration(tempo)
-    targets = [
-        pose_target(frame, solver.figure, style, source=score.source) for frame in frames
-    ]
+    targets = [pose_target(frame, solver.figure, style, source=score.source) for frame in frames]
     if len(targets) < 2:
         raise MotionError(f"{score.title!r} has one frame; a motion needs two at least")
     poses = []
@@ -120,18 +119,18 @@ def interpolate(
         "key pose" event at each frame.
     """
     key_times = choreography.key_times
-    count = int(round((key_times[-1] + HOLD) * RATE)) + 1
+    count = round((key_times[-1] + HOLD) * RATE) + 1
     time = np.arange(count) / RATE
     model = choreography.solver.model
     qpos = np.empty((count, model.nq))
     poses = choreography.key_poses
     qpos[:] = poses[0].qpos
     curves = _Curves(choreography, effort, kind)
-    for i, (begin, end) in enumerate(zip(key_times[:-1], key_times[1:], strict=True)):
+    for i, (begin, end) in enumerate(pairwise(key_times)):
         inside = (time >= begin) & (time <= end)
         phase = (time[inside] - begin) / (end - begin)
-        share = phase if kind is Interpolation.SLERP else logistic(
-            phase, effort.time, effort.weight
+        share = (
+            phase if kind is Interpolation.SLERP else logistic(phase, effort.time, effort.weight)
         )
         qpos[inside] = curves(i)(share)
         qpos[time > end] = poses[i + 1].qpos
@@ -151,9 +150,7 @@ def interpolate(
 class _Curves:
     """The way between each pair of key poses; a repeated pair is solved once."""
 
-    def __init__(
-        self, choreography: Choreography, effort: Effort, kind: Interpolation
-    ) -> None:
+    def __init__(self, choreography: Choreography, effort: Effort, kind: Interpolation) -> None:
         self._choreography = choreography
         self._kind = kind
         direct = Effort(effort.time, effort.weight, 1.0)

@@ -59,7 +59,7 @@ class Motion:
         """Check shapes and times.
 
         Raises:
-            MotionError: Shapes that do not fit the model, times that do not increase, not-a-numbers.
+            MotionError: Shapes that do not fit the model, times that do not increase, no numbers.
         """
         frames = len(self.time)
         for name, array, width in (
@@ -68,9 +68,7 @@ class Motion:
             ("qacc", self.qacc, self.model.nv),
         ):
             if array.shape != (frames, width):
-                raise MotionError(
-                    f"{name} must have shape ({frames}, {width}), got {array.shape}"
-                )
+                raise MotionError(f"{name} must have shape ({frames}, {width}), got {array.shape}")
             if not np.all(np.isfinite(array)):
                 raise MotionError(f"{name} of {self.name} has values that are not numbers")
         if frames < 2 or self.time[0] != 0.0 or not np.all(np.diff(self.time) > 0):

@@ -63,7 +63,10 @@ def motion_from_arrays(
         FormatError: Something is missing, or the motion is another body's.
     """
     try:
-        own = {name: arrays[prefix + name] for name in ("time", "qpos", "qvel", "qacc")}
+        own = {
+            name: np.asarray(arrays[prefix + name], dtype=np.float64)
+            for name in ("time", "qpos", "qvel", "qacc")
+        }
         events = tuple(
             Event(float(t), str(kind), str(name), None if np.isnan(beat) else float(beat))
             for t, kind, name, beat in zip(

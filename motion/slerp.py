@@ -43,10 +43,10 @@ def slerp_poses(model: mujoco.MjModel, start: Array, end: Array, share: Array) -
 def _slerp_chain(axes: Array, start: Array, end: Array, share: Array) -> Array:
     ends = Rotation.from_davenport(axes, "intrinsic", np.array([start, end]))
     turned = Slerp([0.0, 1.0], ends)(share)
-    angles = np.asarray(turned.as_davenport(axes, "intrinsic"))
+    angles: Array = np.asarray(turned.as_davenport(axes, "intrinsic"))
     # The decomposition knows angles up to full turns; keep near the straight line between ends.
     line = (1 - share)[:, None] * start + share[:, None] * end
-    return angles + 2 * np.pi * np.round((line - angles) / (2 * np.pi))
+    return np.asarray(angles + 2 * np.pi * np.round((line - angles) / (2 * np.pi)))
 
 
 @lru_cache(maxsize=4)

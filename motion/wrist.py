@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import mujoco
 import numpy as np
@@ -92,7 +93,7 @@ def wrist_profiles(motion: Motion) -> tuple[Profile, ...]:
     }
     profiles = []
     events = motion.key_events
-    for before, after in zip(events[:-1], events[1:], strict=True):
+    for before, after in pairwise(events):
         inside = (motion.time >= before.time - 1e-9) & (motion.time <= after.time + 1e-9)
         if inside.sum() < 3:
             continue

@@ -56,7 +56,7 @@ def _distance_to_outline(hull: Array, point: Array) -> float:
 
 
 def centre_of_pressure(points: Array, forces: Array) -> Array:
-    """Where the floor's vertical force acts, (2,), m: sum f_z p / sum f_z; not-a-number in the air."""
+    """Where the floor's vertical force acts, (2,), m: sum f_z p / sum f_z; NaN in the air."""
     vertical = forces[:, 2]
     total = vertical.sum()
     if total <= LOADED:

@@ -52,7 +52,7 @@ class SimulatedBody:
         period: float = CONTROL_PERIOD,
     ) -> None:
         _refuse_help(model)
-        self._substeps = int(round(period / model.opt.timestep))
+        self._substeps = round(period / model.opt.timestep)
         if self._substeps < 1 or abs(self._substeps * model.opt.timestep - period) > 1e-9:
             raise BodyError(
                 f"the control period {period:g} s must be a multiple of the time step"
@@ -129,8 +129,11 @@ class SimulatedBody:
 
     def _judge(self) -> None:
         # MuJoCo resets a diverged simulation to its first state and leaves a warning behind.
-        bad = (mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL,
-               mujoco.mjtWarning.mjWARN_BADQACC)
+        bad = (
+            mujoco.mjtWarning.mjWARN_BADQPOS,
+            mujoco.mjtWarning.mjWARN_BADQVEL,
+            mujoco.mjtWarning.mjWARN_BADQACC,
+        )
         if any(self.data.warning[w].number for w in bad):
             self.fault = "the simulation diverged"
         elif self.data.subtree_com[0, 2] < FALLEN * self._first_com_height:

@@ -24,9 +24,7 @@ class ContactReader:
         self._model = model
         self.soles = Plant(model).sole_geoms
         self._row = {int(geom): i for i, geom in enumerate(self.soles)}
-        self._floors = set(
-            np.flatnonzero(model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE).tolist()
-        )
+        self._floors = set(np.flatnonzero(model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE).tolist())
         self._force = np.zeros((len(self.soles), 3))
         self._point = np.zeros((len(self.soles), 3))
         self._depth = np.zeros(len(self.soles))

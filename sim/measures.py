@@ -106,9 +106,7 @@ def measure(recording: Recording) -> Measures:
             for p, f, c in zip(points, forces, com, strict=True)
         ]
     )
-    cop = np.array(
-        [balance.centre_of_pressure(p, f) for p, f in zip(points, forces, strict=True)]
-    )
+    cop = np.array([balance.centre_of_pressure(p, f) for p, f in zip(points, forces, strict=True)])
     limit = recording.model.actuator_forcerange[:, 1]
     fell = recording.fault is not None
     return Measures(

@@ -177,7 +177,7 @@ class PalmDown(_ArmRule):
 
 
 class WristLine(_ArmRule):
-    """The hand carries the line of the arm on: bent with the curve, or inflected by the movement."""
+    """The hand carries the arm's line on: bent with the curve, or inflected by the movement."""
 
     name: ClassVar[str] = "line of the wrist"
     unit: ClassVar[str] = "deg"

@@ -51,7 +51,7 @@ class FootOnItsMark(_LegRule):
 
 
 class FlatFoot(_LegRule):
-    """Heel, big toe and little toe on the floor, no rolling: R31 = R32 = 0 for the foot, toes level.
+    """Heel, big toe and little toe on the floor, no rolling: R31 = R32 = 0, toes level.
 
     Not R33 = 1, whose gradient vanishes at the solution.
     """
@@ -140,7 +140,9 @@ class TurnoutAtTheHip(_LegRule):
     bound: ClassVar[float] = 21.0
     kind: ClassVar[Kind] = Kind.PREFER
     weight: ClassVar[float] = 0.5
-    source: ClassVar[str] = "60 % hip, 20-30 % ankle and foot, 10-20 % knee (IADMS through Athletico)"
+    source: ClassVar[str] = (
+        "60 % hip, 20-30 % ankle and foot, 10-20 % knee (IADMS through Athletico)"
+    )
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
         return body.joint(f"{self.side}_ankle_turn")
@@ -167,4 +169,3 @@ class FeetTurnedOutAlike(Rule):
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
         return {}
-

@@ -58,7 +58,7 @@ class KneeOnItsSign(SidedRule):
 class LegTurnedOut(SidedRule):
     """The knee of a leg in the air faces as far outwards as the turnout asks.
 
-    The residual is the angle, about the thigh, from the knee's face to the wanted outward direction.
+    The residual is the angle, about the thigh, from the knee's face to the outward direction.
     """
 
     name: ClassVar[str] = "turnout of the leg"
