@@ -24,6 +24,8 @@ from enpointe.models.anthropometry import Anthropometry
 __all__ = ["SIDES", "Hinge", "Skeleton", "mirrored", "side_sign"]
 
 SIDES = ("left", "right")
+NECK_RISE = 0.035
+"""Neck joint above suprasternale, m: about the seventh cervical vertebra."""
 _D = sqrt(0.5)
 
 
@@ -76,7 +78,8 @@ NECK = (
 SHOULDER = (
     Hinge("shoulder_raise", (_D, -_D, 0), (-75, 205), 1.1, 0.004, 0.15),
     Hinge("shoulder_cross", (-_D, -_D, 0), (-88, 88), 1.0, 0.004, 0.15),
-    Hinge("shoulder_turn", (0, 0, 1), (-110, 110), 0.7, 0.004, 0.10),
+    # Inward it includes what the shoulder blade adds to the joint when the arm is low in front.
+    Hinge("shoulder_turn", (0, 0, 1), (-125, 110), 0.7, 0.004, 0.10),
 )
 ELBOW = (
     Hinge("elbow_bend", (0, -1, 0), (0, 145), 0.9, 0.002, 0.08),
@@ -106,7 +109,7 @@ class Skeleton:
 
     Trunk and limb lengths are de Leva's (1996). Foot length and breadth are women's in ANSUR II
     (Gordon et al. 2014: foot 0.151 and ball breadth 0.056 of stature), since de Leva's "foot" ends
-    short of the shoe. The height of the ankle is what is left of the stature.
+    short of the shoe. The ankle is as high as a head in proportion leaves it: 0.0445 of stature.
     """
 
     measures: Anthropometry
@@ -116,8 +119,7 @@ class Skeleton:
 
     @property
     def ankle_height(self) -> float:
-        below_sternum = self.waist_height + self.torso_length + self.thigh + self.shank
-        return self.measures.height - below_sternum - self.head_and_neck
+        return 0.0445 * self.measures.height
 
     @property
     def thigh(self) -> float:
@@ -147,8 +149,9 @@ class Skeleton:
 
     @property
     def head_and_neck(self) -> float:
-        """Suprasternale to vertex: 0.189 of stature, what de Leva's mean woman has left."""
-        return 0.189 * self.measures.height
+        """Suprasternale to vertex: what trunk, legs and ankles leave of the stature."""
+        below = self.ankle_height + self.shank + self.thigh + self.waist_height + self.torso_length
+        return self.measures.height - below
 
     @property
     def hip_half_width(self) -> float:

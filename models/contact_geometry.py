@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import mujoco
 
-from enpointe.models.anatomy import SIDES, Skeleton, side_sign
+from enpointe.models.anatomy import NECK_RISE, SIDES, Skeleton, side_sign
 
 __all__ = ["FLOOR", "SOLE_CLASS", "add_floor", "add_limb_contacts", "add_soles"]
 
@@ -116,7 +116,8 @@ def add_limb_contacts(spec: mujoco.MjSpec, skeleton: Skeleton) -> None:
     capsule.add("torso", (0, 0, 0.02), (0, 0, 0.55 * torso), 0.085)
     top = torso - 0.075
     capsule.add("torso", (0, -0.45 * shoulder, top), (0, 0.45 * shoulder, top), 0.075, "chest")
-    capsule.add("head", (0.0, 0, 0.12), (0.005, 0, 0.185), 0.075)
+    crown = skeleton.head_and_neck - NECK_RISE
+    capsule.add("head", (0.0, 0, crown - 0.16), (0.005, 0, crown - 0.1), 0.075)
     for side in SIDES:
         capsule.add(f"{side}_upper_arm", (0, 0, -0.05), (0, 0, -skeleton.upper_arm + 0.02), 0.032)
         capsule.add(f"{side}_forearm", (0, 0, -0.03), (0, 0, -skeleton.forearm + 0.02), 0.025)

@@ -15,7 +15,7 @@ import mujoco
 import numpy as np
 
 from enpointe.models import anatomy
-from enpointe.models.anatomy import SIDES, Hinge, Skeleton, mirrored, side_sign
+from enpointe.models.anatomy import NECK_RISE, SIDES, Hinge, Skeleton, mirrored, side_sign
 from enpointe.models.anthropometry import Anthropometry, Segment
 from enpointe.models.contact_geometry import add_floor, add_limb_contacts, add_soles
 
@@ -104,8 +104,6 @@ def _add_trunk(spec: mujoco.MjSpec, skeleton: Skeleton) -> mujoco.MjsBody:
 
 SITE_GROUP = 4
 """Hidden by default in MuJoCo's viewers."""
-NECK_RISE = 0.035
-"""Neck joint above suprasternale, m: about the seventh cervical vertebra."""
 
 
 def _set_torso_inertia(torso: mujoco.MjsBody, skeleton: Skeleton) -> None:

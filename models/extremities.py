@@ -19,6 +19,8 @@ from enpointe.notation import Depth, Side, Sign
 __all__ = ["elbow_of_rounded_arm", "extremity", "limb_root"]
 
 Vector = NDArray[np.float64]
+LEAST_DEPTH = 0.2
+"""How far before or behind the shoulder a named position stays at least, as a share of the reach."""
 _GRAZE = 1e-3
 """A sign may lie this much (m) outside the sphere of reach before it is refused."""
 
@@ -36,6 +38,7 @@ def extremity(
     *,
     leg: bool = False,
     root: Vector | None = None,
+    gives: bool = False,
     source: str | None = None,
 ) -> Vector:
     """Where a sign puts a wrist or ankle (or, with the bone's length, an elbow or knee).
@@ -51,6 +54,9 @@ def extremity(
         length: Distance from `root`, m.
         leg: Measure on the leg's lines and from the hip.
         root: Centre of the limb's sphere in the girdle's frame; shoulder or hip if None.
+        gives: A named position gives way to the body: for a dancer whose arm is too short for its
+            height, it comes nearer to the shoulder's height until `LEAST_DEPTH` of the reach is
+            left for the depth. A sign that somebody wrote is refused instead.
         source: Name of the score, for errors.
 
     Returns:
@@ -69,6 +75,10 @@ def extremity(
         _check_reach(beyond, length, sign, leg, source)
         return np.array([centre[0], centre[1] + outward * sqrt(max(beyond, 0.0)), z])
     y = outward * sign.width * figure.full_width(leg=leg)
+    if gives:
+        most = sqrt(max((1 - LEAST_DEPTH**2) * length**2 - (y - centre[1]) ** 2, 0.0))
+        rise = min(max(rise, -most), most)
+        z = centre[2] + rise
     beyond = length**2 - rise**2 - (y - centre[1]) ** 2
     _check_reach(beyond, length, sign, leg, source)
     ahead = 1.0 if sign.depth is Depth.FRONT else -1.0

@@ -11,13 +11,14 @@ from dataclasses import dataclass
 
 import mujoco
 
-from enpointe.models.anatomy import SIDES, Skeleton, side_sign
+from enpointe.models.anatomy import NECK_RISE, SIDES, Skeleton, side_sign
 from enpointe.models.anthropometry import Sex
 from enpointe.models.loft import Ring, loft
 
 __all__ = ["add_flesh"]
 
 _DRAWN_FOR = 1.68
+_CROWN_DRAWN_AT = 0.2825
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,21 +193,30 @@ class _Tailor:
         self._standing_loft("torso", "shoulders", _SHOULDERS, "skin", chest)
 
     def head(self, *, bun: bool) -> None:
+        """Drawn above a woman's neck; a shorter neck sinks the head to where its crown is."""
+        crown = self._skeleton.head_and_neck - NECK_RISE
+        sink = crown / self._size - _CROWN_DRAWN_AT
         self._standing_loft("head", "neck", _NECK, "skin")
-        self._standing_loft("head", "face", _HEAD, "skin")
-        self._ellipsoid("head", "hair", (-0.012, 0, 0.214), (0.098, 0.0805, 0.0815), "hair")
-        self._ellipsoid("head", "nose", (0.094, 0, 0.150), (0.014, 0.009, 0.017), "skin")
-        self._ellipsoid("head", "mouth", (0.083, 0, 0.114), (0.009, 0.019, 0.005), "lips")
+        face = [(z + sink, deep, broad, shift) for z, deep, broad, shift in _HEAD]
+        self._standing_loft("head", "face", face, "skin")
+
+        def feature(
+            name: str,
+            pos: tuple[float, float, float],
+            size: tuple[float, float, float],
+            material: str,
+        ) -> None:
+            self._ellipsoid("head", name, (pos[0], pos[1], pos[2] + sink), size, material)
+
+        feature("hair", (-0.012, 0, 0.214), (0.098, 0.0805, 0.0815), "hair")
+        feature("nose", (0.094, 0, 0.150), (0.014, 0.009, 0.017), "skin")
+        feature("mouth", (0.083, 0, 0.114), (0.009, 0.019, 0.005), "lips")
         if bun:
-            self._ellipsoid("head", "bun", (-0.092, 0, 0.258), (0.037, 0.042, 0.037), "hair")
+            feature("bun", (-0.092, 0, 0.258), (0.037, 0.042, 0.037), "hair")
         for side in SIDES:
             s = side_sign(side)
-            self._ellipsoid(
-                "head", f"{side}_eye", (0.0855, s * 0.031, 0.171), (0.006, 0.012, 0.006), "eyes"
-            )
-            self._ellipsoid(
-                "head", f"{side}_ear", (-0.002, s * 0.070, 0.158), (0.014, 0.007, 0.022), "skin"
-            )
+            feature(f"{side}_eye", (0.0855, s * 0.031, 0.171), (0.006, 0.012, 0.006), "eyes")
+            feature(f"{side}_ear", (-0.002, s * 0.070, 0.158), (0.014, 0.007, 0.022), "skin")
 
     def arm(self, side: str) -> None:
         skeleton = self._skeleton

@@ -197,7 +197,8 @@ def _arm(
         return ArmTarget(ArmShape.WRITTEN, shoulder, wrist, elbow, forearm_turn=palm)
     if signs.rounded:
         reach = figure.arm_reach(radians(style.elbow_deg))
-        wrist = extremity(figure, side, signs.wrist, reach, source=source)
+        named = signs.named is not None
+        wrist = extremity(figure, side, signs.wrist, reach, gives=named, source=source)
         return rounded_arm(wrist, side, figure, style, radians(style.wrist_deg))
     wrist = extremity(figure, side, signs.wrist, figure.stretched_arm, source=source)
     shoulder = figure.shoulders[side]

@@ -99,13 +99,13 @@ _THESIS = "Neagle 2005 §4.2.2"
 
 ARM_PLACES: Mapping[str, ArmPlace] = {
     "first": ArmPlace(
-        Sign(0.36, 2.75, Depth.LEVEL), "at the side, fingertips near the thigh", _THESIS
+        Sign(0.28, 2.64, Depth.FRONT), "at the side, fingertips near the thigh", _THESIS
     ),
     "bas": ArmPlace(
-        Sign(0.17, 2.80, Depth.FRONT), "low, rounded, just off the front of the thighs", _THESIS
+        Sign(0.17, 2.68, Depth.FRONT), "low, rounded, just off the front of the thighs", _THESIS
     ),
     "avant": ArmPlace(
-        Sign(0.22, 3.50, Depth.FRONT),
+        Sign(0.20, 3.50, Depth.FRONT),
         "in front, at the base of the breastbone",
         "ABT, port de bras (gateway); webref, Positions des bras (height)",
     ),
@@ -125,12 +125,12 @@ ARM_PLACES: Mapping[str, ArmPlace] = {
         "Grant, demi-seconde",
     ),
     "arabesque eye level": ArmPlace(
-        Sign(0.10, 4.45, Depth.FRONT, straight=True),
+        Sign(0.20, 4.45, Depth.FRONT, straight=True),
         "straight in front, fingertips on the line between the eyes",
         f"{_THESIS}; Grant, arabesque",
     ),
     "arabesque above shoulder": ArmPlace(
-        Sign(0.10, 4.20, Depth.FRONT, straight=True),
+        Sign(0.20, 4.20, Depth.FRONT, straight=True),
         "straight in front, just above the shoulder",
         _THESIS,
     ),
