@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from enpointe.models.keypose import KeyPoseSolver as KeyPoseSolver
     from enpointe.models.kinematics import Kinematics as Kinematics
     from enpointe.models.target import PoseTarget as PoseTarget
-    from enpointe.models.target import Style as Style
+    from enpointe.models.style import Style as Style
     from enpointe.models.target import pose_target as pose_target
 
 _HOMES = {
@@ -31,7 +31,7 @@ _HOMES = {
     "PoseTarget": "enpointe.models.target",
     "RuleResult": "enpointe.models.certificate",
     "Sex": "enpointe.models.anthropometry",
-    "Style": "enpointe.models.target",
+    "Style": "enpointe.models.style",
     "build_dancer": "enpointe.models.dancer",
     "dancer_model": "enpointe.models.dancer",
     "pose_target": "enpointe.models.target",

@@ -90,7 +90,8 @@ class PoseProblem:
         self.rules = rules
         self.symbols = Symbols()
         self.unknowns = ca.SX.sym("x", model.nv)
-        body = SymbolicBody(model, qpos_from_tangent(model, self.unknowns))
+        facing = self.symbols("facing")
+        body = SymbolicBody(model, qpos_from_tangent(model, self.unknowns, facing))
         residuals = {rule.label: rule.residual(body, self.symbols) for rule in rules}
         self.cost = _POSTURE_WEIGHT * ca.sumsqr(self.unknowns[6:])
         equalities: list[ca.SX] = []
@@ -123,7 +124,7 @@ class PoseProblem:
 
     def parameters(self, target: PoseTarget) -> NDArray[np.float64]:
         """The numbers of `target` in the problem's order, (P,)."""
-        values: dict[str, NDArray[np.float64]] = {}
+        values: dict[str, NDArray[np.float64]] = {"facing": np.array(target.facing)}
         for rule in self.rules:
             values |= rule.values(target)
         return self.symbols.fill(values)
@@ -202,7 +203,9 @@ class KeyPoseSolver:
         parameters = problem.parameters(target)
         start = perf_counter()
         seed = differential_ik(self.model, target) if guess is None else guess
-        unknowns, iterations = problem.solve(_tangent(seed), parameters, self._lower, self._upper)
+        unknowns, iterations = problem.solve(
+            _tangent(seed, target.facing), parameters, self._lower, self._upper
+        )
         elapsed = 1e3 * (perf_counter() - start)
         if not np.all(np.isfinite(unknowns)):
             raise PoseError(
@@ -210,7 +213,7 @@ class KeyPoseSolver:
             )
         return KeyPose(
             name=target.name,
-            qpos=_qpos(unknowns),
+            qpos=_qpos(unknowns, target.facing),
             certificate=problem.certify(unknowns, parameters),
             target=target,
             solve_ms=elapsed,
@@ -220,18 +223,20 @@ class KeyPoseSolver:
 
 def _bounds(model: mujoco.MjModel) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     ranges = model.jnt_range[1:]
-    lower = np.concatenate([[-2.0, -2.0, 0.0], np.full(3, -np.pi), ranges[:, 0] + _RANGE_MARGIN])
-    upper = np.concatenate([[2.0, 2.0, 3.0], np.full(3, np.pi), ranges[:, 1] - _RANGE_MARGIN])
+    lower = np.concatenate([[-20.0, -20.0, 0.0], np.full(3, -np.pi), ranges[:, 0] + _RANGE_MARGIN])
+    upper = np.concatenate([[20.0, 20.0, 4.0], np.full(3, np.pi), ranges[:, 1] - _RANGE_MARGIN])
     return lower, upper
 
 
-def _tangent(qpos: NDArray[np.float64]) -> NDArray[np.float64]:
-    rotation = Rotation.from_quat(qpos[3:7], scalar_first=True).as_rotvec()
+def _tangent(qpos: NDArray[np.float64], facing: float) -> NDArray[np.float64]:
+    upright = Rotation.from_euler("z", facing)
+    rotation = (upright.inv() * Rotation.from_quat(qpos[3:7], scalar_first=True)).as_rotvec()
     return np.concatenate([qpos[:3], rotation, qpos[7:]])
 
 
-def _qpos(unknowns: NDArray[np.float64]) -> NDArray[np.float64]:
-    quaternion = Rotation.from_rotvec(unknowns[3:6]).as_quat(canonical=True, scalar_first=True)
+def _qpos(unknowns: NDArray[np.float64], facing: float) -> NDArray[np.float64]:
+    rotation = Rotation.from_euler("z", facing) * Rotation.from_rotvec(unknowns[3:6])
+    quaternion = rotation.as_quat(canonical=True, scalar_first=True)
     return np.concatenate([unknowns[:3], quaternion, unknowns[6:]])
 
 

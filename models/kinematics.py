@@ -104,8 +104,13 @@ class Kinematics:
         return np.asarray(positions).T, stacked, np.asarray(com).ravel()
 
 
-def qpos_from_tangent(model: mujoco.MjModel, tangent: ca.SX) -> ca.SX:
+def qpos_from_tangent(
+    model: mujoco.MjModel, tangent: ca.SX, facing: ca.SX | float = 0.0
+) -> ca.SX:
     """A configuration (nq, 1) from root position, root rotation vector and hinge angles (nv, 1).
+
+    The rotation vector is about the upright that faces `facing` (rad), so that it stays small
+    wherever the dancer faces.
 
     A rotation vector needs no unit-norm constraint, which would be active together with its
     bounds at the identity and stall an interior-point solver.
@@ -125,7 +130,9 @@ def qpos_from_tangent(model: mujoco.MjModel, tangent: ca.SX) -> ca.SX:
         )
     vector = tangent[3:6]
     angle = ca.sqrt(ca.sumsqr(vector) + 1e-20)
-    quaternion = ca.vertcat(ca.cos(angle / 2), ca.sin(angle / 2) / angle * vector)
+    w, (x, y, z) = ca.cos(angle / 2), ca.vertsplit(ca.sin(angle / 2) / angle * vector)
+    c, s = ca.cos(facing / 2), ca.sin(facing / 2)
+    quaternion = ca.vertcat(c * w - s * z, c * x - s * y, c * y + s * x, c * z + s * w)
     return ca.vertcat(tangent[:3], quaternion, tangent[6:])
 
 

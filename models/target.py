@@ -10,18 +10,15 @@ from math import radians
 import numpy as np
 from numpy.typing import NDArray
 
-from enpointe.errors import ScoreError
 from enpointe.models.extremities import elbow_of_rounded_arm, extremity
-from enpointe.models.figure import ROUNDED_ELBOW_DEG, Figure
-from enpointe.models.foot_positions import (
-    DEFAULT_TURNOUT_DEG,
-    Footprint,
-    footprints,
-    support_hull,
-)
-from enpointe.notation import ArmSigns, Orientation, ResolvedFrame, Side, Sign
+from enpointe.models.figure import Figure
+from enpointe.models.foot_positions import support_hull
+from enpointe.models.leg_target import LegTarget, OnPointe, Standing, InAir, ToeOnLeg, leg_target
+from enpointe.models.stances import Ground, StanceTracker
+from enpointe.models.style import Style
+from enpointe.notation import ArmSigns, Orientation, ResolvedFrame, Side
 
-__all__ = ["ArmShape", "ArmTarget", "LegTarget", "PoseTarget", "Style", "pose_target"]
+__all__ = ["ArmShape", "ArmTarget", "PoseTarget", "pose_target", "rounded_arm", "turn_tilt_bend"]
 
 Vector = NDArray[np.float64]
 
@@ -32,27 +29,6 @@ class ArmShape(StrEnum):
     ROUNDED = "rounded"
     STRAIGHT = "straight"
     WRITTEN = "written elbow"
-
-
-@dataclass(frozen=True, slots=True)
-class Style:
-    """What a method or a teacher decides.
-
-    Attributes:
-        turnout_deg: Each foot from straight ahead.
-        elbow_deg: Bend of the elbow of a rounded arm (Neagle 2005 §4.4.1).
-        wrist_deg: Bend of the wrist of a rounded arm. The thesis bends it as much as the elbow
-            (§4.4.4); on a hand with fingers, which carry the curve on, that breaks the line, so
-            ours is less.
-        palm_deg: Turn of the forearm from thumb-forward to the palm that faces along the curve.
-            The thesis turns 90 (§4.4.4) and finds it more than its dancers' (§4.5.3 b); 80 is the
-            supination of adults (AAOS).
-    """
-
-    turnout_deg: float = DEFAULT_TURNOUT_DEG
-    elbow_deg: float = ROUNDED_ELBOW_DEG
-    wrist_deg: float = 14.0
-    palm_deg: float = 80.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,55 +55,78 @@ class ArmTarget:
 
 
 @dataclass(frozen=True, slots=True)
-class LegTarget:
-    """One leg: flat on the floor at a footprint, or with its ankle in the pelvis' frame.
-
-    Attributes:
-        footprint: Where the flat foot stands; None for a leg in the air.
-        ankle: (3,), m, in the pelvis' frame, for a leg in the air.
-        knee: (3,), m, in the pelvis' frame where a bent knee is written; None for a straight leg.
-        turnout: Of the leg, rad.
-    """
-
-    footprint: Footprint | None
-    ankle: Vector | None
-    knee: Vector | None
-    turnout: float
-
-
-@dataclass(frozen=True, slots=True)
 class PoseTarget:
-    """One key pose to solve, the dancer facing x with the feet about the origin.
+    """One key pose to solve, in the world.
 
     Attributes:
-        arms: By side.
+        figure: The dancer's lengths.
+        arms: By side, in the torso's frame.
         legs: By side.
         head: Turn, tilt and bend of the head against the torso, rad, in `Orientation`'s senses.
-        body: The same of the torso against the pelvis.
-        pelvis: The same of the pelvis against the world.
-        support: Hull of the soles on the floor, counter-clockwise, (H, 2), m.
+        body: The same of the torso against the pelvis as written.
+        pelvis: The same of the pelvis against the upright that faces `facing`.
+        facing: Where the dancer faces, from the audience, + to her left, rad.
+        weight: Where the centre of mass should be, (2,), m; None is the middle of the support.
+        com: Where the centre of mass is, (3,), m, in the air; None on the floor.
+        real: Whether the dancer has a real dancer's range of motion.
         name: For messages.
     """
 
+    figure: Figure
     arms: Mapping[Side, ArmTarget]
     legs: Mapping[Side, LegTarget]
     head: Vector
     body: Vector
     pelvis: Vector
-    support: NDArray[np.float64]
+    facing: float = 0.0
+    weight: Vector | None = None
+    com: Vector | None = None
+    real: bool = False
     name: str = "pose"
 
     @property
-    def structure(self) -> tuple[tuple[str, str, bool], ...]:
+    def upright(self) -> NDArray[np.float64]:
+        """Rotation of the pelvis as written, in the world, (3, 3)."""
+        return turn_tilt_bend(self.pelvis + np.array([self.facing, 0.0, 0.0]))
+
+    @property
+    def support(self) -> NDArray[np.float64]:
+        """Hull of the soles that bear weight, counter-clockwise, (H, 2), m."""
+        soles = [
+            leg.soles(self.figure)
+            for leg in self.legs.values()
+            if isinstance(leg, Standing | OnPointe)
+        ]
+        return support_hull(np.vstack(soles)) if soles else np.empty((0, 2))
+
+    @property
+    def structure(self) -> tuple[object, ...]:
         """What decides which rules apply; poses of one structure share a compiled problem."""
-        return tuple(
-            (
-                self.arms[side].shape.value,
-                "floor" if self.legs[side].footprint is not None else "air",
-                self.legs[side].knee is not None,
-            )
-            for side in Side
-        )
+        legs = tuple(_kind_of(self.legs[side]) for side in Side)
+        arms = tuple(self.arms[side].shape for side in Side)
+        return (legs, arms, self.real, self.com is not None)
+
+
+def _kind_of(leg: LegTarget) -> tuple[object, ...]:
+    if isinstance(leg, ToeOnLeg):
+        return (ToeOnLeg, leg.site)
+    if isinstance(leg, InAir):
+        return (InAir, leg.knee is not None)
+    if isinstance(leg, Standing):
+        return (Standing, leg.knee_bend > 0)
+    return (type(leg),)
+
+
+def turn_tilt_bend(angles: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Rotation matrix (3, 3) of turn, tilt and bend in that order (eq. 4.9)."""
+    turn, tilt, bend = angles
+    ct, st = np.cos(turn), np.sin(turn)
+    about_z = np.array([[ct, -st, 0], [st, ct, 0], [0, 0, 1]])
+    cx, sx = np.cos(-tilt), np.sin(-tilt)
+    about_x = np.array([[1, 0, 0], [0, cx, -sx], [0, sx, cx]])
+    cy, sy = np.cos(bend), np.sin(bend)
+    about_y = np.array([[cy, 0, sy], [0, 1, 0], [-sy, 0, cy]])
+    return np.asarray(about_z @ about_x @ about_y, dtype=np.float64)
 
 
 def pose_target(
@@ -135,6 +134,7 @@ def pose_target(
     figure: Figure,
     style: Style | None = None,
     *,
+    ground: Ground | None = None,
     source: str | None = None,
     name: str | None = None,
 ) -> PoseTarget:
@@ -144,31 +144,37 @@ def pose_target(
         frame: With everything filled in.
         figure: The dancer's lengths.
         style: The method's amounts.
+        ground: Where the feet stand; as if this were the first frame of a score if None.
         source: Name of the score, for errors.
         name: For messages; the beat if None.
 
     Raises:
-        ScoreError: A sign that no limb of this dancer reaches, or no foot on the floor.
+        ScoreError: A sign that no limb of this dancer reaches.
     """
     style = style or Style()
-    legs = _legs(frame, figure, style, source)
-    soles = [leg.footprint.sole(figure) for leg in legs.values() if leg.footprint is not None]
-    if not soles:
-        raise ScoreError(
-            "no foot is on the floor in this frame; write one at height 1",
-            frame.at.line,
-            frame.at.column,
-            source,
-        )
+    ground = ground or StanceTracker(figure, style.turnout_deg).follow(frame)
+    legs = {
+        side: leg_target(leg, side, figure, style, ground.prints.get(side), source)
+        for side, leg in frame.legs.items()
+    }
+    floored = any(isinstance(leg, Standing | OnPointe) for leg in legs.values())
     return PoseTarget(
+        figure=figure,
         arms={side: _arm(frame.arms[side], side, figure, style, source) for side in Side},
         legs=legs,
         head=_angles(frame.head),
         body=_angles(frame.body),
         pelvis=_angles(frame.pelvis),
-        support=support_hull(np.vstack(soles)),
+        facing=ground.facing,
+        com=None if floored else np.array([*ground.middle, _ALOFT * figure.lines[-1]]),
+        real=style.real,
         name=name or f"beat {frame.beat}",
     )
+
+
+_ALOFT = 0.68
+"""Where the centre of mass of a pose in the air is put, as a share of the stretched wrist's height,
+until a jump says better: a hand's breadth above a dancer on demi-pointe."""
 
 
 def rounded_arm(
@@ -204,45 +210,6 @@ def _arm(
     shoulder = figure.shoulders[side]
     elbow = shoulder + figure.upper_arm / figure.straight_arm * (wrist - shoulder)
     return ArmTarget(ArmShape.STRAIGHT, shoulder, wrist, elbow)
-
-
-def _legs(
-    frame: ResolvedFrame, figure: Figure, style: Style, source: str | None
-) -> dict[Side, LegTarget]:
-    turnout = radians(style.turnout_deg)
-    prints: dict[Side, Footprint] = {}
-    if frame.feet is not None:
-        prints.update(footprints(figure, frame.feet, style.turnout_deg))
-    legs: dict[Side, LegTarget] = {}
-    for side in Side:
-        knee_sign = frame.knees.get(side)
-        knee = (
-            extremity(figure, side, knee_sign, figure.thigh, leg=True, source=source)
-            if knee_sign is not None
-            else None
-        )
-        sign = frame.foot_signs.get(side)
-        if sign is None:
-            legs[side] = LegTarget(prints[side], None, knee, turnout)
-        elif sign.height <= _FLOOR_LINE:
-            foot = _written_print(sign, side, figure, turnout)
-            legs[side] = LegTarget(foot, None, knee, turnout)
-        else:
-            reach = figure.stretched_leg if knee is None else figure.shank
-            ankle = extremity(figure, side, sign, reach, leg=True, root=knee, source=source)
-            legs[side] = LegTarget(None, ankle, knee, turnout)
-    return legs
-
-
-_FLOOR_LINE = 1.0 + 1e-9
-
-
-def _written_print(sign: Sign, side: Side, figure: Figure, turnout: float) -> Footprint:
-    """A foot written on the floor line: under its width, as deep as the straight leg allows."""
-    floor = Sign(sign.width, sign.height, sign.depth)
-    ankle = extremity(figure, side, floor, figure.straight_leg + figure.ankle_height, leg=True)
-    outward = 1.0 if side is Side.LEFT else -1.0
-    return Footprint(ankle[:2], outward * turnout)
 
 
 def _angles(orientation: Orientation) -> Vector:

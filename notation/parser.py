@@ -18,8 +18,9 @@ from lark import Lark, Token, Tree
 from lark.exceptions import UnexpectedCharacters, UnexpectedInput, UnexpectedToken
 
 from enpointe.errors import ScoreError
-from enpointe.notation.frames import FrameBuilder, number
-from enpointe.notation.score import TEMPO_RANGE, Frame, Score
+from enpointe.notation.frame_builder import FrameBuilder, number
+from enpointe.notation.frame import Frame
+from enpointe.notation.score import TEMPO_RANGE, Score
 from enpointe.notation.signs import Location
 from enpointe.notation.wording import describe_end, either, phrase, suggest
 

@@ -32,12 +32,20 @@ from enum import StrEnum
 
 __all__ = [
     "ArmsPosition",
+    "Bend",
+    "BodyPlace",
     "Depth",
+    "Direction",
     "FeetPosition",
+    "FloorContact",
+    "HandContact",
+    "LegPosition",
     "Location",
     "Orientation",
+    "PosePosition",
     "Side",
     "Sign",
+    "Support",
 ]
 
 
@@ -59,6 +67,45 @@ class Depth(StrEnum):
     FRONT = "front"
     LEVEL = "level"
     BEHIND = "behind"
+
+
+class FloorContact(StrEnum):
+    """How much of a foot is on the floor."""
+
+    FLAT = "flat"
+    DEMI_POINTE = "demi-pointe"
+    POINTE = "pointe"
+    TOUCH = "touching"
+    """The toe, without weight: a pointe tendue."""
+
+
+class Bend(StrEnum):
+    """How far the knee of a supporting leg is bent."""
+
+    STRAIGHT = "straight"
+    DEMI_PLIE = "demi-plié"
+    """Heels down, as deep as they allow; on one leg it is called fondu."""
+    GRAND_PLIE = "grand plié"
+    """Thighs level; the heels rise, except in second and in the open fourth."""
+
+
+class Direction(StrEnum):
+    """Where the working leg is, seen from the hips."""
+
+    DEVANT = "devant"
+    SECONDE = "seconde"
+    DERRIERE = "derrière"
+
+
+class BodyPlace(StrEnum):
+    """A part of the dancer's own body that a hand lies on."""
+
+    HIP = "hip"
+    WAIST = "waist"
+    SHOULDER = "shoulder"
+    THIGH = "thigh"
+    HEAD = "head"
+    OTHER_HAND = "other hand"
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,11 +160,14 @@ class FeetPosition:
     Attributes:
         name: Its name in the vocabulary: "first" to "fifth".
         front: The foot in front, for third, fourth and fifth; None for first and second.
+        open: The open form of the fourth (quatrième ouverte): opposite the first, heels in line,
+            where the closed one (croisée) is opposite the fifth.
         at: Where it was written; takes no part in equality.
     """
 
     name: str
     front: Side | None = None
+    open: bool = False
     at: Location | None = field(default=None, compare=False)
 
 
@@ -134,4 +184,73 @@ class ArmsPosition:
 
     name: str
     leading: Side | None = None
+    at: Location | None = field(default=None, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Support:
+    """How one foot meets the floor and its knee is bent; where it stands is another matter.
+
+    Attributes:
+        floor: Flat, on demi-pointe, on pointe, or touching without weight.
+        bend: Straight, demi-plié or grand plié.
+        at: Where it was written; takes no part in equality.
+    """
+
+    floor: FloorContact = FloorContact.FLAT
+    bend: Bend = Bend.STRAIGHT
+    at: Location | None = field(default=None, compare=False)
+
+    @property
+    def bears(self) -> bool:
+        """Whether weight is on the foot."""
+        return self.floor is not FloorContact.TOUCH
+
+
+@dataclass(frozen=True, slots=True)
+class LegPosition:
+    """A named position of the working leg.
+
+    Attributes:
+        name: Its name in the vocabulary: "tendu", "dégagé", "raised", "cou-de-pied", "retiré",
+            "attitude" or "arabesque".
+        direction: Devant, seconde or derrière; never None once read from a score.
+        degrees: How high: the angle of the leg (of the thigh in an attitude) from hanging, for the
+            positions that have a height; None for the others.
+        at: Where it was written; takes no part in equality.
+    """
+
+    name: str
+    direction: Direction | None = None
+    degrees: float | None = None
+    at: Location | None = field(default=None, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class PosePosition:
+    """A named position of the whole body: legs, arms, head, body and facing at once.
+
+    Whatever else a frame writes overrides that part of the pose.
+
+    Attributes:
+        name: Its name in the vocabulary, such as "first arabesque" or "croisé devant".
+        support: The leg that the dancer stands on.
+        at: Where it was written; takes no part in equality.
+    """
+
+    name: str
+    support: Side
+    at: Location | None = field(default=None, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class HandContact:
+    """A hand that lies on the dancer's own body, on its own side.
+
+    Attributes:
+        place: What it lies on.
+        at: Where it was written; takes no part in equality.
+    """
+
+    place: BodyPlace
     at: Location | None = field(default=None, compare=False)

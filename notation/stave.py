@@ -1,254 +1,263 @@
-"""Draws a score as an SVG stave.
+"""Draws a score as SVG: one tall drawing, or pages to print.
 
-Five lines, read from left to right; frames that are written, and in them only what is written (what
-is not stays as it was), named positions expanded to their signs. Seen from behind the dancer.
+Five lines, read from left to right, seen from behind the dancer; only what is written is drawn, and
+named positions by the signs that they stand for. Beat 0 is the pose to start from and stands before
+the first bar, as count-in bars do.
 
-Beat 0 is the pose to start from and stands before the first bar, as count-in bars do; bar n of a
-metre with m pulses holds the beats from (n - 1) m + 1 up to the next bar.
+The drawing goes through four hands: :mod:`~enpointe.notation.stave_frame` puts the signs of one
+frame together, :mod:`~enpointe.notation.stave_layout` spaces frames and breaks staves,
+:mod:`~enpointe.notation.stave_line` draws a stave with all about it, and this module puts staves on
+the page. The shapes themselves are in :mod:`~enpointe.notation.glyphs`.
 """
 
 from __future__ import annotations
 
-import re
+import textwrap
 from collections.abc import Iterator, Sequence
-from fractions import Fraction
-from html import escape
+from dataclasses import dataclass
 
-from enpointe.notation.glyphs import FEET_APART, GLYPHS, crossed, extremity, joint, orientation
-from enpointe.notation.score import Frame, Score
-from enpointe.notation.signs import FeetPosition, Side, Sign
-from enpointe.notation.vocabulary import arm_signs, feet_signs
+from enpointe.notation.score import Score
+from enpointe.notation.stave_above import BOLD, ITALIC
+from enpointe.notation.stave_ink import (
+    INK,
+    SERIF,
+    Mark,
+    glyph,
+    px,
+    svg,
+    text,
+    text_width,
+    union,
+    words,
+)
+from enpointe.notation.stave_layout import break_lines
+from enpointe.notation.stave_line import FrameDrawing, LineDrawing, draw_line
 from enpointe.notation.writer import format_beat, frame_lines
 
-__all__ = ["stave_svg"]
+__all__ = ["A4", "Page", "stave_pages", "stave_svg"]
 
-SPACE = 18.0
-"""Distance between two stave lines, in pixels."""
-
-FRAMES_PER_STAVE = 12
-
-_FRAME_WIDTH = 5.0
-_REACH = 2.0
-_LEFT = 3.0
-_RIGHT = 1.2
-_LAST = 0.5
-_TOP = 4.4
-_ABOVE = 3.4
-_BELOW = 2.4
-_LINE = 0.055
-_BAR = 0.085
-_INK = "#111"
-_SERIF = "Georgia, 'Times New Roman', 'DejaVu Serif', serif"
-_NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-_PARTS_OF_A_BEAT = {
-    Fraction(1, 2): "&",
-    Fraction(1, 4): "¼",
-    Fraction(3, 4): "¾",
-    Fraction(1, 3): "⅓",
-    Fraction(2, 3): "⅔",
-}
+_TITLE = 2.1
+_SMALLER_TITLE = 1.35
+_TITLE_LINES = 3
+_GAP = 1.9
+_EDGE = 1.8
+_WIDEST_GAP = 3.2
+_FOOT = 1.6
+_NOTES = (1, 2, 4, 8, 16)
 
 
-def stave_svg(score: Score) -> str:
-    """Draws a score.
+@dataclass(frozen=True, slots=True)
+class Page:
+    """A sheet of paper, upright or on its side; all in millimetres.
+
+    Attributes:
+        width: Of the sheet.
+        height: Of the sheet.
+        margin: Free on all sides.
+        space: Distance between two stave lines.
+    """
+
+    width: float = 210.0
+    height: float = 297.0
+    margin: float = 16.0
+    space: float = 2.4
+
+    def __post_init__(self) -> None:
+        if self.measure < 30.0 or (self.height - 2 * self.margin) / self.space < 40.0:
+            raise ValueError(
+                f"a page of {self.width:g} mm by {self.height:g} mm with margins of "
+                f"{self.margin:g} mm has no room for a stave whose lines are {self.space:g} mm "
+                "apart; it needs 30 times that in width and 40 times in height"
+            )
+
+    @property
+    def measure(self) -> float:
+        """Length of a full stave, in stave spaces."""
+        return (self.width - 2 * self.margin) / self.space
+
+
+A4 = Page()
+
+
+def stave_svg(score: Score, page: Page = A4) -> str:
+    """Draws a score in one piece, as wide as a page and as tall as need be.
 
     Args:
         score: The score, as parsed (its positions are in the vocabulary).
+        page: Its width, margins and the distance of the lines; a score that fills less than one
+            stave makes a narrower drawing.
 
     Returns:
         A self-contained SVG document. Each frame is ``<g class="frame" id="frame-N"
-        data-beat="...">``, N from 0, with a transparent rectangle over its whole cell to be clicked
-        on.
+        data-beat="...">``, N from 0, with a transparent rectangle over its whole room to be clicked
+        on, and its words as a title.
     """
-    staves = _wrap(score)
-    columns = max((len(stave) for stave in staves), default=1)
-    width = _LEFT + _RIGHT + _FRAME_WIDTH * max(columns, 3)
-    height = _TOP + len(staves) * (_ABOVE + 4.0 + _BELOW)
+    lines = _lines(score, page)
+    edge = _EDGE
+    right = max(line.box.right for line in lines) if lines else 0.0
+    measure = page.measure if len(lines) > 1 else min(page.measure, max(right, 30.0))
+    y = 0.0
+    header = list(_header(score, measure, y))
+    y = union(mark.box for mark in header).bottom
+    placed = []
+    for line in lines:
+        y += _GAP - line.box.top
+        placed.append(line.moved(0.0, y))
+        y += line.box.bottom
+    size = (measure + 2 * edge, y + edge)
+    return _document(score, header, placed, size, edge, (px(size[0]), px(size[1])))
+
+
+def stave_pages(score: Score, page: Page = A4) -> tuple[str, ...]:
+    """Draws a score on pages to print, A4 upright unless another page is given.
+
+    Args:
+        score: The score, as parsed.
+        page: The sheet.
+
+    Returns:
+        One SVG document a page, in millimetres, with frames as in :func:`stave_svg`; their ids are
+        those of the whole score.
+    """
+    edge, height = page.margin / page.space, page.height / page.space
+    sheets: list[tuple[list[Mark], list[LineDrawing]]] = []
+    room = 0.0
+    for line in _lines(score, page):
+        tall = line.box.bottom - line.box.top + _GAP
+        if not sheets or tall > room:
+            header = list(
+                _running_header(score, page.measure, edge)
+                if sheets
+                else _header(score, page.measure, edge)
+            )
+            top = union(mark.box for mark in header).bottom
+            room = height - edge - _FOOT - top
+            sheets.append((header, []))
+        sheets[-1][1].append(line)
+        room -= tall
+    return tuple(
+        _document(
+            score,
+            [*header, *_footer(number, len(sheets), page.measure, height - edge)],
+            _down(lines, union(mark.box for mark in header).bottom, height - edge - _FOOT, full),
+            (page.width / page.space, height),
+            edge,
+            (f"{page.width:g}mm", f"{page.height:g}mm"),
+        )
+        for number, (header, lines) in enumerate(sheets, 1)
+        for full in (number < len(sheets),)
+    )
+
+
+def _lines(score: Score, page: Page) -> list[LineDrawing]:
+    resolved = score.resolved()
+    return [draw_line(score, resolved, line) for line in break_lines(score, page.measure)]
+
+
+def _down(lines: Sequence[LineDrawing], top: float, bottom: float, full: bool) -> list[LineDrawing]:
+    """Staves one under another; on a page that others follow, spread down to its foot."""
+    ink = sum(line.box.bottom - line.box.top for line in lines)
+    gap = _GAP
+    if full:
+        gap = min(max(gap, (bottom - top - ink) / len(lines)), _WIDEST_GAP)
+    placed, y = [], top
+    for line in lines:
+        y += gap - line.box.top
+        placed.append(line.moved(0.0, y))
+        y += line.box.bottom
+    return placed
+
+
+def _header(score: Score, measure: float, top: float) -> Iterator[Mark]:
+    """Title in the middle, tempo at the left, the school at the right."""
+    title = score.title.strip()
+    size = _TITLE if text_width(title, _TITLE) < measure else _SMALLER_TITLE
+    letters = max(int(measure / (0.6 * size)), 8)
+    y = top
+    for row in textwrap.wrap(title, letters, max_lines=_TITLE_LINES, placeholder=" …") or [title]:
+        y += 1.15 * size
+        yield words(row, measure / 2, y, size, anchor="middle", fit=measure, name="title")
+    y += 2.5
+    yield words(
+        score.method, measure, y, 0.95, anchor="end", style=ITALIC, fit=measure / 2, name="method"
+    )
+    yield from _tempo(score, y, measure / 2 - 1.0)
+
+
+def _tempo(score: Score, y: float, room: float) -> Iterator[Mark]:
+    """The tempo as music has it: its word, and how many notes of what value go to a minute."""
+    x = 0.0
+    if score.tempo_word:
+        word = score.tempo_word[:1].upper() + score.tempo_word[1:]
+        mark = words(word, x, y, 1.0, style=BOLD, fit=room - 6.0, name="tempo-word")
+        x = mark.box.right + 0.45
+        yield mark
+    unit = score.metre[1]
+    number = f"= {score.tempo:.5g}"
+    if unit in _NOTES:
+        note = glyph(f"note {unit}", x + 0.4, y - 0.22)
+        yield note
+        x = note.box.right + 0.3
+    else:
+        number = f"pulse {number}"
+    yield words(number, x, y, 1.0, name="tempo")
+
+
+def _running_header(score: Score, measure: float, top: float) -> Iterator[Mark]:
+    title = textwrap.shorten(score.title, 80, placeholder=" …") or score.title.strip()[:80]
+    yield words(
+        title, measure / 2, top + 0.8, 0.9, anchor="middle", style=ITALIC, fit=measure, name="title"
+    )
+
+
+def _footer(number: int, of: int, measure: float, bottom: float) -> Iterator[Mark]:
+    if of > 1:
+        yield words(str(number), measure / 2, bottom, 0.9, anchor="middle", name="page-number")
+
+
+def _document(
+    score: Score,
+    marks: Sequence[Mark],
+    lines: Sequence[LineDrawing],
+    size: tuple[float, float],
+    edge: float,
+    printed: tuple[str, str],
+) -> str:
+    width, height = px(size[0]), px(size[1])
+    title = text(score.title)
     parts = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" class="stave" role="img" width="{_px(width)}" '
-        f'height="{_px(height)}" viewBox="0 0 {_px(width)} {_px(height)}" font-family="{_SERIF}" '
-        f'fill="{_INK}">',
-        f"<title>{_text(score.title)}</title>",
-        f'<rect width="{_px(width)}" height="{_px(height)}" fill="#fff"/>',
-        *_heading(score, width),
+        f'<svg xmlns="http://www.w3.org/2000/svg" class="stave" role="group" aria-label="{title}" '
+        f'width="{printed[0]}" height="{printed[1]}" viewBox="0 0 {width} {height}" '
+        f'font-family="{SERIF}" fill="{INK}">',
+        f"<title>{title}</title>",
+        f'<rect class="paper" width="{width}" height="{height}" fill="#fff"/>',
+        *svg(mark.moved(edge, 0.0) for mark in marks),
     ]
-    for row, stave in enumerate(staves):
-        top = _TOP + row * (_ABOVE + 4.0 + _BELOW) + _ABOVE
-        parts += _stave(score, stave, top, last=row == len(staves) - 1)
+    for line in lines:
+        moved = line.moved(edge, 0.0)
+        parts += ['<g class="line">', *svg(moved.marks)]
+        for frame in moved.frames:
+            parts += _frame(score, frame)
+        parts.append("</g>")
     parts.append("</svg>")
     return "\n".join(parts) + "\n"
 
 
-def _bar(score: Score, beat: Fraction) -> int:
-    return (beat - 1) // score.metre[0]
-
-
-def _wrap(score: Score) -> list[list[tuple[int, Frame]]]:
-    """Frames by stave, broken at a bar line where the bars are short enough."""
-    bars: list[list[tuple[int, Frame]]] = []
-    for index, frame in enumerate(score.frames):
-        new = not bars or _bar(score, frame.beat) != _bar(score, bars[-1][-1][1].beat)
-        if new or len(bars[-1]) == FRAMES_PER_STAVE:
-            bars.append([])
-        bars[-1].append((index, frame))
-    staves: list[list[tuple[int, Frame]]] = []
-    for bar in bars:
-        if not staves or len(staves[-1]) + len(bar) > FRAMES_PER_STAVE:
-            staves.append([])
-        staves[-1] += bar
-    return staves
-
-
-def _heading(score: Score, width: float) -> Iterator[str]:
-    size = min(1.55, 1.8 * width / max(len(score.title), 1))
-    yield _label(score.title, width / 2, 2.1, size, anchor="middle")
-    yield _label(score.method, width - _RIGHT, 3.6, 0.85, anchor="end", style="italic")
-    yield from _tempo(score)
-
-
-def _tempo(score: Score) -> Iterator[str]:
-    """The metronome mark, its note drawn so that no music font is needed."""
-    x, y = 0.62 + 0.6, _TOP + 0.42
-    number = f"= {score.tempo:g}"
-    unit = score.metre[1]
-    if unit not in (2, 4, 8):
-        yield _label(f"pulse {number}", x - 0.3, y, 0.9)
-        return
-    head = f'cx="{_px(x)}" cy="{_px(y - 0.22)}" rx="{_px(0.27)}" ry="{_px(0.19)}"'
-    turned = f'transform="rotate(-22 {_px(x)} {_px(y - 0.22)})"'
-    paint = (
-        f'fill="none" stroke="{_INK}" stroke-width="{_px(0.08)}"' if unit == 2 else f'fill="{_INK}"'
-    )
-    yield f'<g class="tempo"><ellipse {head} {turned} {paint}/>'
-    yield _stroke(x + 0.23, y - 0.3, x + 0.23, y - 1.35, 0.07)
-    if unit == 8:
-        yield _stroke(x + 0.21, y - 1.32, x + 0.52, y - 0.85, 0.09)
-    yield f"{_label(number, x + 0.75, y, 0.9)}</g>"
-
-
-def _stave(
-    score: Score, frames: Sequence[tuple[int, Frame]], top: float, last: bool
-) -> Iterator[str]:
-    end = _LEFT + _FRAME_WIDTH * len(frames) + (_LAST if last else 0.0)
-    start = 0.6
-    for line in range(5):
-        yield _stroke(start, top + line, end, top + line, _LINE)
-    yield _stroke(start, top, start, top + 4, _BAR)
-    middle = (start + _LEFT) / 2
-    if frames[0][0] == 0:
-        yield _label(str(score.metre[0]), middle, top + 1.78, 1.7, anchor="middle", weight="bold")
-        yield _label(str(score.metre[1]), middle, top + 3.38, 1.7, anchor="middle", weight="bold")
-    for column, (index, frame) in enumerate(frames):
-        left = _LEFT + column * _FRAME_WIDTH
-        if column and _bar(score, frame.beat) != _bar(score, frames[column - 1][1].beat):
-            yield _stroke(left, top, left, top + 4, _BAR)
-        yield from _frame(index, frame, left, top)
-    if last:
-        yield _stroke(end - 0.42, top, end - 0.42, top + 4, _BAR)
-        yield _stroke(end - 0.12, top, end - 0.12, top + 4, 0.24)
-    else:
-        yield _stroke(end, top, end, top + 4, _BAR)
-
-
-def _frame(index: int, frame: Frame, left: float, top: float) -> Iterator[str]:
-    centre = left + _FRAME_WIDTH / 2
+def _frame(score: Score, drawing: FrameDrawing) -> Iterator[str]:
+    frame, box = drawing.cell.frame, drawing.cover
     beat = format_beat(frame.beat)
-    yield f'<g class="frame" id="frame-{index}" data-beat="{_text(beat)}">'
-    yield f"<title>{_text('; '.join((f'beat {beat}', *frame_lines(frame))))}</title>"
+    where = f"Frame {drawing.cell.index}, beat {beat}"
+    bar = score.bar(frame.beat)
+    if bar >= 1:
+        where += f", bar {bar}"
+    says = "; ".join(frame_lines(frame)) or "as before"
     yield (
-        f'<rect x="{_px(left)}" y="{_px(top - 2.8)}" width="{_px(_FRAME_WIDTH)}" '
-        f'height="{_px(8.4)}" fill="none" pointer-events="all"/>'
+        f'<g class="frame" id="frame-{drawing.cell.index}" data-beat="{text(beat)}" tabindex="0">'
     )
-    yield _label(_count(frame.beat), centre, top - 1.75, 0.95, anchor="middle")
-    hands = arm_signs(frame.arms) if frame.arms else dict(frame.hands)
-    for side, sign in hands.items():
-        yield from _limb(extremity(sign.depth), side, sign, centre, top)
-    for side, sign in (*frame.elbows.items(), *frame.knees.items()):
-        yield from _limb(joint(sign.depth), side, sign, centre, top)
-    if frame.feet:
-        yield from _feet(frame.feet, centre, top)
-    for side, sign in frame.foot_signs.items():
-        yield from _limb(extremity(sign.depth), side, sign, centre, top)
-    for space, part in enumerate((frame.head, frame.body, frame.pelvis)):
-        for name, dx, dy in orientation(part) if part else ():
-            yield _glyph(name, centre + dx, top + space + 0.5 + dy)
+    yield f"<title>{text(f'{where}: {says}')}</title>"
+    yield (
+        f'<rect x="{px(box.left)}" y="{px(box.top)}" width="{px(box.right - box.left)}" '
+        f'height="{px(box.bottom - box.top)}" fill="none" pointer-events="all"/>'
+    )
+    yield from svg(drawing.marks)
     yield "</g>"
-
-
-def _limb(name: str, side: Side, sign: Sign, centre: float, top: float) -> Iterator[str]:
-    outward = 1.0 if side is Side.RIGHT else -1.0
-    x = centre + outward * sign.width * _REACH
-    y = top + 5.0 - sign.height
-    if sign.height == 1.0:
-        y += _below_floor(name)
-    yield _glyph(name, x, y)
-    if crossed(sign):
-        yield _glyph("crossed", x, y)
-
-
-def _feet(position: FeetPosition, centre: float, top: float) -> Iterator[str]:
-    for side, sign in feet_signs(position).items():
-        name = extremity(sign.depth)
-        outward = 1.0 if side is Side.RIGHT else -1.0
-        x = centre + outward * FEET_APART[position.name]
-        yield _glyph(name, x, top + 4.0 + _below_floor(name))
-
-
-def _below_floor(name: str) -> float:
-    """How far a flat foot's sign stands under the floor line, so that it hangs from it."""
-    glyph = GLYPHS[name]
-    reach = max([glyph.radius, *(max(abs(y1), abs(y2)) for _, y1, _, y2 in glyph.strokes)])
-    return max(reach, glyph.weight / 2) + _LINE / 2
-
-
-def _glyph(name: str, x: float, y: float) -> str:
-    glyph = GLYPHS[name]
-    kind = f'class="sign {name.replace(" ", "-")}"'
-    if glyph.radius:
-        return f'<circle {kind} cx="{_px(x)}" cy="{_px(y)}" r="{_px(glyph.radius)}"/>'
-    path = "".join(
-        f"M{_px(x + x1)} {_px(y + y1)}L{_px(x + x2)} {_px(y + y2)}"
-        for x1, y1, x2, y2 in glyph.strokes
-    )
-    return (
-        f'<path {kind} d="{path}" stroke="{_INK}" stroke-width="{_px(glyph.weight)}" fill="none"/>'
-    )
-
-
-def _count(beat: Fraction) -> str:
-    """What is counted: whole beats by number, a half by "&", other parts by their fraction."""
-    rest = beat % 1
-    if not rest:
-        return str(beat)
-    return _PARTS_OF_A_BEAT.get(rest, str(rest))
-
-
-def _stroke(x1: float, y1: float, x2: float, y2: float, weight: float) -> str:
-    return (
-        f'<path d="M{_px(x1)} {_px(y1)}L{_px(x2)} {_px(y2)}" stroke="{_INK}" '
-        f'stroke-width="{_px(weight)}" fill="none"/>'
-    )
-
-
-def _label(
-    text: str,
-    x: float,
-    y: float,
-    size: float,
-    anchor: str = "start",
-    style: str = "normal",
-    weight: str = "normal",
-) -> str:
-    return (
-        f'<text x="{_px(x)}" y="{_px(y)}" font-size="{_px(size)}" text-anchor="{anchor}" '
-        f'font-style="{style}" font-weight="{weight}">{_text(text)}</text>'
-    )
-
-
-def _text(value: str) -> str:
-    """Escaped for XML, and without the characters that XML can't hold."""
-    return escape(_NOT_XML.sub("\ufffd", value))
-
-
-def _px(spaces: float) -> str:
-    return f"{spaces * SPACE:.2f}".rstrip("0").rstrip(".")

@@ -6,7 +6,8 @@ import json
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
 
-from enpointe.notation.score import Frame, Score
+from enpointe.notation.frame import Frame
+from enpointe.notation.score import Score
 from enpointe.notation.signs import ArmsPosition, FeetPosition, Orientation, Side, Sign
 
 __all__ = ["format_beat", "format_score", "frame_lines"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from enpointe.models.leg_target import InAir, LegTarget, OnPointe, Standing, ToeOnFloor, ToeOnLeg
 from enpointe.models.rules.arms import (
     ElbowOnItsSign,
     ElbowOnTheSlope,
@@ -12,21 +13,37 @@ from enpointe.models.rules.arms import (
     StraightElbow,
     WristLine,
 )
-from enpointe.models.rules.balance import CentredWeight, ComOverSupport
+from enpointe.models.rules.balance import CentredWeight, ComInFlight, ComOverSupport
 from enpointe.models.rules.base import Kind as Kind
 from enpointe.models.rules.base import Rule as Rule
 from enpointe.models.rules.base import Symbols as Symbols
 from enpointe.models.rules.feet import (
+    BallOnItsMark,
     FeetTurnedOutAlike,
-    FlatFoot,
-    FootOnItsMark,
-    FootOnItsSign,
+    FootRaised,
     FootTurnout,
+    OnTheTip,
     PointedFoot,
+    ToesFlat,
     TurnoutAtTheHip,
 )
-from enpointe.models.rules.legs import KneeOnItsSign, LegTurnedOut, StraightKnee
-from enpointe.models.rules.stance import BodyAsWritten, HeadAsWritten, PelvisAsWritten
+from enpointe.models.rules.legs import (
+    FootOnItsSign,
+    KneeBend,
+    KneeOnItsSign,
+    KneeOverToe,
+    LegTurnedOut,
+    StretchedKnee,
+    ToeAtTheLeg,
+    ToeOnTheFloor,
+)
+from enpointe.models.rules.range_of_motion import HipExtension
+from enpointe.models.rules.stance import (
+    BodyAsWritten,
+    HeadAsWritten,
+    PelvisAsWritten,
+    PelvisLent,
+)
 from enpointe.models.target import ArmShape, PoseTarget
 from enpointe.notation import Side
 
@@ -35,14 +52,24 @@ __all__ = ["Kind", "Rule", "Symbols", "rules_for"]
 
 def rules_for(target: PoseTarget) -> tuple[Rule, ...]:
     """The rules that apply to a pose of this structure."""
-    rules: list[Rule] = [HeadAsWritten(), BodyAsWritten(), PelvisAsWritten()]
+    rules: list[Rule] = [HeadAsWritten(), BodyAsWritten(), _pelvis_rule(target)]
     for side in Side:
         rules += _arm_rules(target.arms[side].shape, side)
-        rules += _leg_rules(target, side)
-    rules += [ComOverSupport(), CentredWeight()]
-    if all(leg.footprint is not None for leg in target.legs.values()):
+        rules += _leg_rules(target.legs[side], side)
+        if target.real:
+            rules.append(HipExtension(side))
+    if target.com is not None:
+        rules.append(ComInFlight())
+    else:
+        rules += [ComOverSupport(), CentredWeight()]
+    if all(isinstance(leg, Standing) for leg in target.legs.values()):
         rules.append(FeetTurnedOutAlike())
     return tuple(rules)
+
+
+def _pelvis_rule(target: PoseTarget) -> Rule:
+    working = any(not isinstance(leg, Standing | OnPointe) for leg in target.legs.values())
+    return PelvisLent() if target.real and working else PelvisAsWritten()
 
 
 def _arm_rules(shape: ArmShape, side: Side) -> list[Rule]:
@@ -59,19 +86,25 @@ def _arm_rules(shape: ArmShape, side: Side) -> list[Rule]:
     return [HandOnItsSign(side), ElbowOnItsSign(side), ForearmTurn(side), WristLine(side)]
 
 
-def _leg_rules(target: PoseTarget, side: Side) -> list[Rule]:
-    leg = target.legs[side]
-    if leg.footprint is not None:
+def _leg_rules(leg: LegTarget, side: Side) -> list[Rule]:
+    if isinstance(leg, Standing):
         rules: list[Rule] = [
-            FootOnItsMark(side),
-            FlatFoot(side),
+            BallOnItsMark(side),
+            ToesFlat(side),
             FootTurnout(side),
+            FootRaised(side),
+            KneeBend(side),
             TurnoutAtTheHip(side),
         ]
-    else:
-        rules = [FootOnItsSign(side), PointedFoot(side), LegTurnedOut(side)]
+        return [*rules, KneeOverToe(side)] if leg.knee_bend > 0 else rules
+    if isinstance(leg, OnPointe):
+        return [OnTheTip(side), FootTurnout(side), KneeBend(side), TurnoutAtTheHip(side)]
+    rules = [PointedFoot(side), LegTurnedOut(side)]
+    if isinstance(leg, ToeOnFloor):
+        return [ToeOnTheFloor(side), *rules]
+    if isinstance(leg, ToeOnLeg):
+        return [ToeAtTheLeg(side, leg.site), *rules]
+    assert isinstance(leg, InAir)
     if leg.knee is not None:
-        rules.append(KneeOnItsSign(side))
-    elif leg.footprint is not None:
-        rules.append(StraightKnee(side))
-    return rules
+        return [FootOnItsSign(side), KneeOnItsSign(side), *rules]
+    return [FootOnItsSign(side), StretchedKnee(side), *rules]

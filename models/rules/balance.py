@@ -1,4 +1,4 @@
-"""Balance: the centre of mass over the soles."""
+"""Balance: the centre of mass over the soles, or on its way through the air."""
 
 from __future__ import annotations
 
@@ -12,35 +12,45 @@ from enpointe.models.kinematics import SymbolicBody
 from enpointe.models.rules.base import Kind, Rule, Symbols
 from enpointe.models.target import PoseTarget
 
-__all__ = ["CentredWeight", "ComOverSupport"]
+__all__ = ["CentredWeight", "ComInFlight", "ComOverSupport", "centroid", "half_planes"]
 
 _EDGES = 12
 
 
 class ComOverSupport(Rule):
-    """The centre of mass stands inside the hull of the soles: b - A c >= margin for every edge."""
+    """The centre of mass stands inside the hull of the soles: b - A c >= margin for every edge.
+
+    A support too small for the margin (pointe) asks for half its own half-width instead.
+    """
 
     name: ClassVar[str] = "centre of mass over the support"
     unit: ClassVar[str] = "mm"
-    bound: ClassVar[float] = 10.0
+    bound: ClassVar[float] = 0.0
     kind: ClassVar[Kind] = Kind.AT_LEAST
     source: ClassVar[str] = "statics; Neagle 2005 §4.5.2 (perpendicularity and exact equilibrium)"
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
         normals = ca.reshape(symbols("support_normals", 2 * _EDGES), _EDGES, 2)
-        return symbols("support_offsets", _EDGES) - normals @ body.com[:2]
+        inside = symbols("support_offsets", _EDGES) - normals @ body.com[:2]
+        return inside - symbols("support_margin")
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
         normals, offsets = half_planes(target.support)
         index = np.arange(_EDGES) % len(offsets)
+        room = float(np.min(offsets - normals @ centroid(target.support)))
         return {
             "support_normals": normals[index].ravel(order="F"),
             "support_offsets": offsets[index],
+            "support_margin": np.array(min(MARGIN, 0.5 * room)),
         }
 
 
+MARGIN = 0.010
+"""How far inside the support the centre of mass stays, m, where the support is broad enough."""
+
+
 class CentredWeight(Rule):
-    """The weight is shared: the centre of mass is over the middle of the support."""
+    """The weight is shared: the centre of mass is over the middle of the support, or as asked."""
 
     name: ClassVar[str] = "weight in the middle"
     unit: ClassVar[str] = "mm"
@@ -53,7 +63,25 @@ class CentredWeight(Rule):
         return body.com[:2] - symbols("support_centre", 2)
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
-        return {"support_centre": centroid(target.support)}
+        centre = centroid(target.support) if target.weight is None else target.weight
+        return {"support_centre": centre}
+
+
+class ComInFlight(Rule):
+    """In the air the centre of mass is where its parabola has it."""
+
+    name: ClassVar[str] = "centre of mass on its parabola"
+    unit: ClassVar[str] = "mm"
+    bound: ClassVar[float] = 1.0
+    kind: ClassVar[Kind] = Kind.EQUAL
+    source: ClassVar[str] = "free fall"
+
+    def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
+        return body.com - symbols("com", 3)
+
+    def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
+        assert target.com is not None
+        return {"com": target.com}
 
 
 def half_planes(hull: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

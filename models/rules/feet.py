@@ -1,4 +1,4 @@
-"""The feet: where the position puts them, flat without rolling, turned out, pointed in the air."""
+"""The feet: on their marks, flat without rolling or raised on the ball, on pointe, or pointed."""
 
 from __future__ import annotations
 
@@ -9,29 +9,37 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
+from enpointe.models.foot_positions import Footprint
 from enpointe.models.kinematics import SymbolicBody
+from enpointe.models.leg_target import InAir, OnPointe, Standing
 from enpointe.models.rules.base import Kind, Rule, SidedRule, Symbols
-from enpointe.models.target import LegTarget, PoseTarget
+from enpointe.models.target import PoseTarget
 from enpointe.notation import Side
 
 __all__ = [
+    "BallOnItsMark",
     "FeetTurnedOutAlike",
-    "FlatFoot",
-    "FootOnItsMark",
-    "FootOnItsSign",
+    "FootRaised",
     "FootTurnout",
+    "OnTheTip",
     "PointedFoot",
+    "ToesFlat",
     "TurnoutAtTheHip",
 ]
 
 
-class _LegRule(SidedRule):
-    def _leg(self, target: PoseTarget) -> LegTarget:
-        return target.legs[Side(self.side)]
+class _FootRule(SidedRule):
+    def _footprint(self, target: PoseTarget) -> Footprint:
+        leg = target.legs[Side(self.side)]
+        assert isinstance(leg, Standing | OnPointe)
+        return leg.footprint
 
 
-class FootOnItsMark(_LegRule):
-    """The ankle stands over its footprint at the height of the ankle: a - a_print = 0."""
+class BallOnItsMark(_FootRule):
+    """The ball of the foot is where the position puts it: t - t_print = 0, t the toe joint.
+
+    Marking the ball, not the ankle, lets one rule serve the flat foot, the rise and demi-pointe.
+    """
 
     name: ClassVar[str] = "foot on its mark"
     unit: ClassVar[str] = "mm"
@@ -40,38 +48,58 @@ class FootOnItsMark(_LegRule):
     source: ClassVar[str] = "Neagle 2005 §4.2.2, five positions of the feet"
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
-        height = -float(body.model.site(f"{self.side}_heel").pos[2])
-        ankle = body.site(f"{self.side}_ankle")
-        return ankle - ca.vertcat(symbols(f"{self.side}_print", 2), height)
+        height = -float(body.model.site(f"{self.side}_toe_tip").pos[2])
+        toe_joint = body.frame(f"{self.side}_toe").position
+        return toe_joint - ca.vertcat(symbols(f"{self.side}_mark", 2), height)
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
-        footprint = self._leg(target).footprint
-        assert footprint is not None
-        return {f"{self.side}_print": footprint.ankle}
+        footprint = self._footprint(target)
+        return {f"{self.side}_mark": footprint.point(target.figure.ball_forward)}
 
 
-class FlatFoot(_LegRule):
-    """Heel, big toe and little toe on the floor, no rolling: R31 = R32 = 0, toes level.
+class ToesFlat(_FootRule):
+    """The toes lie on the floor, big and little alike, no rolling: R31 = R32 = 0 for the toes.
 
     Not R33 = 1, whose gradient vanishes at the solution.
     """
 
-    name: ClassVar[str] = "flat foot"
+    name: ClassVar[str] = "no rolling"
     unit: ClassVar[str] = "deg"
     bound: ClassVar[float] = 0.5
     kind: ClassVar[Kind] = Kind.EQUAL
     source: ClassVar[str] = "Neagle 2005 §4.6.2, eq. 4.10"
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
-        rotation = body.frame(f"{self.side}_foot").rotation
-        return ca.vertcat(rotation[2, 0], rotation[2, 1], body.joint(f"{self.side}_toe_raise"))
+        rotation = body.frame(f"{self.side}_toe").rotation
+        return ca.vertcat(rotation[2, 0], rotation[2, 1])
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
         return {}
 
 
-class FootTurnout(_LegRule):
-    """The foot points where the position asks: its axis crossed with the print's is 0."""
+class FootRaised(_FootRule):
+    """The foot stands at the written angle on its toes: 0 flat, `DEMI_POINTE_DEG` demi-pointe."""
+
+    name: ClassVar[str] = "rise of the foot"
+    unit: ClassVar[str] = "deg"
+    bound: ClassVar[float] = 0.5
+    kind: ClassVar[Kind] = Kind.EQUAL
+    source: ClassVar[str] = "Neagle 2005 §4.6.2 (flat foot); toe joint 80-90 deg on demi-pointe"
+
+    def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
+        return body.joint(f"{self.side}_toe_raise") - symbols(f"{self.side}_rise")
+
+    def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
+        leg = target.legs[Side(self.side)]
+        assert isinstance(leg, Standing)
+        return {f"{self.side}_rise": np.array(leg.rise)}
+
+
+class FootTurnout(_FootRule):
+    """The foot points where the position asks: its axis crossed with the print's is 0.
+
+    On pointe, where the foot stands upright, its instep faces there instead.
+    """
 
     name: ClassVar[str] = "turnout of the foot"
     unit: ClassVar[str] = "deg"
@@ -80,37 +108,43 @@ class FootTurnout(_LegRule):
     source: ClassVar[str] = "Neagle 2005 §4.4.6"
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
-        axis = body.frame(f"{self.side}_foot").rotation[:2, 0]
+        # The foot's sideways axis is level both flat and on pointe.
+        aside = body.frame(f"{self.side}_toe").rotation[:2, 1]
         wanted = symbols(f"{self.side}_direction", 2)
-        return wanted[0] * axis[1] - wanted[1] * axis[0]
+        return ca.dot(wanted, aside)
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
-        footprint = self._leg(target).footprint
-        assert footprint is not None
-        angle = footprint.direction
+        angle = self._footprint(target).direction
         return {f"{self.side}_direction": np.array([cos(angle), sin(angle)])}
 
 
-class FootOnItsSign(_LegRule):
-    """The ankle of a leg in the air is where the sign puts it, in the pelvis' frame."""
+class OnTheTip(_FootRule):
+    """The tip of the toes stands on its mark and the toes point straight down: pointe."""
 
-    name: ClassVar[str] = "foot on its sign"
+    name: ClassVar[str] = "on the tip of the toes"
     unit: ClassVar[str] = "mm"
     bound: ClassVar[float] = 2.0
     kind: ClassVar[Kind] = Kind.EQUAL
-    source: ClassVar[str] = "Neagle 2005 §4.4.1, §4.4.6"
+    source: ClassVar[str] = "Russell et al. 2010 (83 deg of plantar flexion en pointe)"
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
-        ankle = body.frame("pelvis").to_local(body.site(f"{self.side}_ankle"))
-        return ankle - symbols(f"{self.side}_ankle", 3)
+        tip = body.site(f"{self.side}_toe_tip")
+        toes = body.frame(f"{self.side}_toe").rotation[:, 0]
+        place = tip - ca.vertcat(symbols(f"{self.side}_tip", 2), 0)
+        curl = body.joint(f"{self.side}_toe_raise") + radians(POINTE_TOES_DEG)
+        return ca.vertcat(place, toes[:2], curl)
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
-        ankle = self._leg(target).ankle
-        assert ankle is not None
-        return {f"{self.side}_ankle": ankle}
+        figure = target.figure
+        tip = self._footprint(target).point(figure.ball_forward + figure.toe_length)
+        return {f"{self.side}_tip": tip}
 
 
-class PointedFoot(_LegRule):
+POINTE_TOES_DEG = 8.0
+"""What the toes add to the ankle so that the line from shin to toe is straight."""
+
+
+class PointedFoot(SidedRule):
     """A foot off the floor is stretched: instep out, toes carrying the line on."""
 
     name: ClassVar[str] = "pointed foot"
@@ -120,29 +154,29 @@ class PointedFoot(_LegRule):
     source: ClassVar[str] = "Neagle 2005 §4.5.2; Russell et al. 2010 (77-83 deg of plantar flexion)"
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
+        share = symbols(f"{self.side}_pointed")
         stretch = {"ankle_point": POINTED_DEG, "ankle_turn": 0, "ankle_roll": 0, "toe_raise": -15}
         return ca.vertcat(
-            *(body.joint(f"{self.side}_{joint}") - radians(v) for joint, v in stretch.items())
+            *(body.joint(f"{self.side}_{j}") - share * radians(v) for j, v in stretch.items())
         )
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
-        return {}
+        leg = target.legs[Side(self.side)]
+        return {f"{self.side}_pointed": np.array(leg.pointed if isinstance(leg, InAir) else 1.0)}
 
 
 POINTED_DEG = 75.0
 
 
-class TurnoutAtTheHip(_LegRule):
+class TurnoutAtTheHip(SidedRule):
     """Turnout comes from the hip first: what the ankle adds is kept small."""
 
     name: ClassVar[str] = "turnout lent by the ankle"
     unit: ClassVar[str] = "deg"
-    bound: ClassVar[float] = 21.0
+    bound: ClassVar[float] = 21.6
     kind: ClassVar[Kind] = Kind.PREFER
     weight: ClassVar[float] = 0.5
-    source: ClassVar[str] = (
-        "60 % hip, 20-30 % ankle and foot, 10-20 % knee (IADMS through Athletico)"
-    )
+    source: ClassVar[str] = "60 % hip, 20-30 % ankle and foot, 10-20 % knee (IADMS through Athletico)"
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
         return body.joint(f"{self.side}_ankle_turn")
@@ -161,11 +195,14 @@ class FeetTurnedOutAlike(Rule):
     source: ClassVar[str] = "Neagle 2005 §4.2.2 (third: hips not twisted)"
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
+        facing = symbols("facing")
         angles = []
         for side in Side:
-            axis = body.frame(f"{side}_foot").rotation[:2, 0]
-            angles.append(ca.atan2(axis[1], axis[0]) * (1 if side is Side.LEFT else -1))
+            axis = body.frame(f"{side}_toe").rotation[:2, 0]
+            forward = ca.cos(facing) * axis[0] + ca.sin(facing) * axis[1]
+            left = -ca.sin(facing) * axis[0] + ca.cos(facing) * axis[1]
+            angles.append(ca.atan2(left, forward) * (1 if side is Side.LEFT else -1))
         return angles[0] - angles[1]
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
-        return {}
+        return {"facing": np.array(target.facing)}

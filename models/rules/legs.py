@@ -1,7 +1,8 @@
-"""The legs: straight unless a bent knee is written, turned out in the air."""
+"""The legs: straight or bent over the toes on the floor; placed, pointed and turned out off it."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import ClassVar
 
 import casadi as ca
@@ -9,20 +10,67 @@ import numpy as np
 from numpy.typing import NDArray
 
 from enpointe.models.kinematics import SymbolicBody
+from enpointe.models.leg_target import InAir, OnPointe, Standing, ToeOnFloor, ToeOnLeg
 from enpointe.models.rules.base import Kind, SidedRule, Symbols
 from enpointe.models.target import PoseTarget
 from enpointe.notation import Side
 
-__all__ = ["KneeOnItsSign", "LegTurnedOut", "StraightKnee"]
+__all__ = [
+    "FootOnItsSign",
+    "KneeBend",
+    "KneeOnItsSign",
+    "KneeOverToe",
+    "LegTurnedOut",
+    "StretchedKnee",
+    "ToeAtTheLeg",
+    "ToeOnTheFloor",
+]
 
 
-class StraightKnee(SidedRule):
-    """The knee is pulled up: knee bend = 0."""
+class KneeBend(SidedRule):
+    """The knee of a standing leg is pulled up straight, or bent as deep as written."""
 
-    name: ClassVar[str] = "straight knee"
+    name: ClassVar[str] = "knee as written"
     unit: ClassVar[str] = "deg"
     bound: ClassVar[float] = 1.0
     kind: ClassVar[Kind] = Kind.EQUAL
+    source: ClassVar[str] = "Neagle 2005 §4.3; grand plie 135 deg (Fotaki 2024, 20 professionals)"
+
+    def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
+        return body.joint(f"{self.side}_knee_bend") - symbols(f"{self.side}_knee_bend")
+
+    def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
+        leg = target.legs[Side(self.side)]
+        assert isinstance(leg, Standing | OnPointe)
+        return {f"{self.side}_knee_bend": np.array(leg.knee_bend)}
+
+
+class KneeOverToe(SidedRule):
+    """A bent knee is over the toes: its distance from the foot's line, seen from above, is 0."""
+
+    name: ClassVar[str] = "knee over the toe"
+    unit: ClassVar[str] = "mm"
+    bound: ClassVar[float] = 30.0
+    kind: ClassVar[Kind] = Kind.PREFER
+    weight: ClassVar[float] = 20.0
+    source: ClassVar[str] = "ballet teaching (plie: knees over the toes)"
+
+    def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
+        knee = body.site(f"{self.side}_knee") - body.frame(f"{self.side}_toe").position
+        aside = body.frame(f"{self.side}_toe").rotation[:2, 1]
+        return ca.dot(knee[:2], aside)
+
+    def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
+        return {}
+
+
+class StretchedKnee(SidedRule):
+    """The knee of a working leg that is not written bent is stretched."""
+
+    name: ClassVar[str] = "stretched knee"
+    unit: ClassVar[str] = "deg"
+    bound: ClassVar[float] = 4.0
+    kind: ClassVar[Kind] = Kind.CHECK
     source: ClassVar[str] = "Neagle 2005 §4.3 (legs straight unless a bent knee is written)"
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
@@ -32,50 +80,144 @@ class StraightKnee(SidedRule):
         return {}
 
 
-class KneeOnItsSign(SidedRule):
-    """A written knee is where its sign puts it, in the pelvis' frame.
+class FootOnItsSign(SidedRule):
+    """The ankle of a leg in the air is where the sign puts it, in the pelvis' frame as written."""
 
-    On the floor the height of the hips decides how deep the knee bends, so the place is a wish.
-    """
+    name: ClassVar[str] = "foot on its sign"
+    unit: ClassVar[str] = "mm"
+    bound: ClassVar[float] = 2.0
+    kind: ClassVar[Kind] = Kind.EQUAL
+    source: ClassVar[str] = "Neagle 2005 §4.4.1, §4.4.6"
+
+    def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
+        hips = body.frame("pelvis").position
+        upright = ca.reshape(symbols("girdle", 9), 3, 3)
+        ankle = upright.T @ (body.site(f"{self.side}_ankle") - hips)
+        return ankle - symbols(f"{self.side}_ankle", 3)
+
+    def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
+        leg = target.legs[Side(self.side)]
+        assert isinstance(leg, InAir)
+        return {f"{self.side}_ankle": leg.ankle, "girdle": target.upright.ravel(order="F")}
+
+
+class KneeOnItsSign(SidedRule):
+    """A written knee is where its sign puts it, in the pelvis' frame as written: a wish."""
 
     name: ClassVar[str] = "knee on its sign"
     unit: ClassVar[str] = "mm"
-    bound: ClassVar[float] = 30.0
+    bound: ClassVar[float] = 40.0
     kind: ClassVar[Kind] = Kind.PREFER
-    weight: ClassVar[float] = 20.0
+    weight: ClassVar[float] = 50.0
     source: ClassVar[str] = "Neagle 2005 §4.4.3, for the knee"
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
-        knee = body.frame("pelvis").to_local(body.site(f"{self.side}_knee"))
+        hips = body.frame("pelvis").position
+        upright = ca.reshape(symbols("girdle", 9), 3, 3)
+        knee = upright.T @ (body.site(f"{self.side}_knee") - hips)
         return knee - symbols(f"{self.side}_knee", 3)
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
-        knee = target.legs[Side(self.side)].knee
-        assert knee is not None
-        return {f"{self.side}_knee": knee}
+        leg = target.legs[Side(self.side)]
+        assert isinstance(leg, InAir) and leg.knee is not None
+        return {f"{self.side}_knee": leg.knee, "girdle": target.upright.ravel(order="F")}
+
+
+class ToeOnTheFloor(SidedRule):
+    """A tendu: the stretched leg's toe touches the floor on its line from the hips."""
+
+    name: ClassVar[str] = "toe on the floor"
+    unit: ClassVar[str] = "mm"
+    bound: ClassVar[float] = 2.0
+    kind: ClassVar[Kind] = Kind.EQUAL
+    source: ClassVar[str] = "Grant, battement tendu; benesh.md B9"
+
+    def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
+        tip = body.site(f"{self.side}_toe_tip")
+        upright = ca.reshape(symbols("girdle", 9), 3, 3)
+        place = upright.T @ (tip - body.frame("pelvis").position)
+        across = symbols(f"{self.side}_across_line", 2)
+        knee = body.joint(f"{self.side}_knee_bend") - symbols(f"{self.side}_stretch")
+        return ca.vertcat(tip[2] - TOE_THICKNESS, ca.dot(across, place[:2]), 0.1 * knee)
+
+    def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
+        leg = target.legs[Side(self.side)]
+        assert isinstance(leg, ToeOnFloor)
+        return {
+            f"{self.side}_across_line": np.array(leg.across),
+            f"{self.side}_stretch": np.radians(2.0),
+            "girdle": target.upright.ravel(order="F"),
+        }
+
+
+TOE_THICKNESS = 0.008
+"""Bone to floor at the tip of a stretched toe, m."""
+
+
+@dataclass(frozen=True)
+class ToeAtTheLeg(SidedRule):
+    """Retire and cou-de-pied: the pointed toe is at its place on the supporting leg."""
+
+    name: ClassVar[str] = "toe at the supporting leg"
+    unit: ClassVar[str] = "mm"
+    bound: ClassVar[float] = 2.0
+    kind: ClassVar[Kind] = Kind.EQUAL
+    source: ClassVar[str] = "benesh.md B9 (retire: toe at the knee; cou-de-pied: at the ankle)"
+    at: str = "knee"
+
+    def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
+        other = "right" if self.side == "left" else "left"
+        upright = ca.reshape(symbols("girdle", 9), 3, 3)
+        gap = body.site(f"{self.side}_toe_tip") - body.site(f"{other}_{self.at}")
+        return upright.T @ gap - symbols(f"{self.side}_toe_place", 3)
+
+    def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
+        leg = target.legs[Side(self.side)]
+        assert isinstance(leg, ToeOnLeg)
+        outward = 1.0 if self.side == "left" else -1.0
+        ahead, aside, up = leg.offset
+        return {
+            f"{self.side}_toe_place": np.array([ahead, outward * aside, up]),
+            "girdle": target.upright.ravel(order="F"),
+        }
 
 
 class LegTurnedOut(SidedRule):
-    """The knee of a leg in the air faces as far outwards as the turnout asks.
+    """The knee of a working leg faces as far outwards as the turnout asks.
 
-    The residual is the angle, about the thigh, from the knee's face to the outward direction.
+    The turnout is the twist of the thigh about its own axis d, once the shortest swing from hanging
+    to d is taken away (swing-twist): a leg devant then faces up without turnout and out with 90.
     """
 
     name: ClassVar[str] = "turnout of the leg"
     unit: ClassVar[str] = "deg"
-    bound: ClassVar[float] = 25.0
+    bound: ClassVar[float] = 30.0
     kind: ClassVar[Kind] = Kind.PREFER
-    weight: ClassVar[float] = 0.3
+    weight: ClassVar[float] = 1.0
     source: ClassVar[str] = "Neagle 2005 §4.4.6 (turnout about the thigh)"
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
         pelvis = body.frame("pelvis").rotation
         thigh = pelvis.T @ body.frame(f"{self.side}_thigh").rotation
         outward = 1.0 if self.side == "left" else -1.0
-        turnout = symbols(f"{self.side}_turnout")
-        wanted = ca.vertcat(ca.cos(turnout), outward * ca.sin(turnout), 0)
-        return ca.atan2(ca.dot(wanted, thigh[:, 1]), ca.dot(wanted, thigh[:, 0]) + 1e-9)
+        front, left = _swung_axes(-thigh[:, 2])
+        twist = ca.atan2(ca.dot(thigh[:, 0], left), ca.dot(thigh[:, 0], front))
+        return outward * twist - symbols(f"{self.side}_turnout")
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
-        turnout = target.legs[Side(self.side)].turnout
-        return {f"{self.side}_turnout": np.array(turnout)}
+        leg = target.legs[Side(self.side)]
+        assert isinstance(leg, InAir | ToeOnFloor | ToeOnLeg)
+        return {f"{self.side}_turnout": np.array(leg.turnout)}
+
+
+def _swung_axes(direction: ca.SX) -> tuple[ca.SX, ca.SX]:
+    """Where front and left of a hanging thigh go by the shortest swing to `direction` (3, 1)."""
+    x, y, z = direction[0], direction[1], direction[2]
+    axis = ca.vertcat(y, -x, 0)
+    share = 1 / (1 - z + 1e-6)
+
+    def swing(v: ca.SX) -> ca.SX:
+        across = ca.cross(axis, v)
+        return v + across + share * ca.cross(axis, across)
+
+    return swing(ca.SX([1, 0, 0])), swing(ca.SX([0, 1, 0]))

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from enpointe.models.kinematics import SymbolicBody
 from enpointe.models.rules.base import Kind, Rule, Symbols
-from enpointe.models.target import PoseTarget
+from enpointe.models.target import PoseTarget, turn_tilt_bend
 
-__all__ = ["BodyAsWritten", "HeadAsWritten", "PelvisAsWritten"]
+__all__ = ["BodyAsWritten", "HeadAsWritten", "PelvisAsWritten", "PelvisLent"]
 
 _HINGES = ("turn", "tilt", "bend")
 
@@ -34,19 +34,24 @@ class HeadAsWritten(Rule):
 
 
 class BodyAsWritten(Rule):
-    """The same at the waist."""
+    """The upper body is held as written, whatever the pelvis lends to a leg below it.
+
+    q_torso = q_pelvis,written q_turn q_tilt q_bend; the residual is the rotation vector left over.
+    """
 
     name: ClassVar[str] = "body as written"
     unit: ClassVar[str] = "deg"
-    bound: ClassVar[float] = 1.0
-    kind: ClassVar[Kind] = Kind.EQUAL
-    source: ClassVar[str] = "Neagle 2005 §4.4.5, §4.6.1, eq. 4.9"
+    bound: ClassVar[float] = 3.0
+    kind: ClassVar[Kind] = Kind.PREFER
+    weight: ClassVar[float] = 100.0
+    source: ClassVar[str] = "Neagle 2005 §4.4.5, §4.6.1, eq. 4.9; Blasis (erect stance)"
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
-        return ca.vertcat(*(body.joint(f"waist_{h}") for h in _HINGES)) - symbols("body", 3)
+        return _rotation_left(body, "torso", symbols("torso_rotation", 9))
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
-        return {"body": target.body}
+        wanted = target.upright @ turn_tilt_bend(target.body)
+        return {"torso_rotation": wanted.ravel(order="F")}
 
 
 class PelvisAsWritten(Rule):
@@ -63,23 +68,26 @@ class PelvisAsWritten(Rule):
     source: ClassVar[str] = "Neagle 2005 §4.2.2 (erect stance, hips not twisted)"
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
-        wanted = symbols("pelvis_rotation", 9)
-        error = ca.reshape(wanted, 3, 3).T @ body.frame("pelvis").rotation
-        return 0.5 * ca.vertcat(
-            error[2, 1] - error[1, 2], error[0, 2] - error[2, 0], error[1, 0] - error[0, 1]
-        )
+        return _rotation_left(body, "pelvis", symbols("pelvis_rotation", 9))
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
-        return {"pelvis_rotation": turn_tilt_bend(target.pelvis).ravel(order="F")}
+        return {"pelvis_rotation": target.upright.ravel(order="F")}
 
 
-def turn_tilt_bend(angles: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Rotation matrix (3, 3) of turn, tilt and bend in that order (eq. 4.9)."""
-    turn, tilt, bend = angles
-    ct, st = np.cos(turn), np.sin(turn)
-    about_z = np.array([[ct, -st, 0], [st, ct, 0], [0, 0, 1]])
-    cx, sx = np.cos(-tilt), np.sin(-tilt)
-    about_x = np.array([[1, 0, 0], [0, cx, -sx], [0, sx, cx]])
-    cy, sy = np.cos(bend), np.sin(bend)
-    about_y = np.array([[cy, 0, sy], [0, 1, 0], [-sy, 0, cy]])
-    return np.asarray(about_z @ about_x @ about_y, dtype=np.float64)
+class PelvisLent(PelvisAsWritten):
+    """A real dancer tips and opens the pelvis for a leg that her hip alone does not lift.
+
+    The same residual as the perfect dancer's, with the bound of what dancers are seen to lend.
+    """
+
+    name: ClassVar[str] = "pelvis lent to the leg"
+    bound: ClassVar[float] = 65.0
+    weight: ClassVar[float] = 2.0
+    source: ClassVar[str] = "Neagle 2005 §4.5.4 d, §4.7.3, §4.8 (hips opened to gain the line)"
+
+
+def _rotation_left(body: SymbolicBody, part: str, wanted: ca.SX) -> ca.SX:
+    error = ca.reshape(wanted, 3, 3).T @ body.frame(part).rotation
+    return 0.5 * ca.vertcat(
+        error[2, 1] - error[1, 2], error[0, 2] - error[2, 0], error[1, 0] - error[0, 1]
+    )

@@ -10,7 +10,7 @@ from fractions import Fraction
 from lark import Token, Tree
 
 from enpointe.errors import ScoreError
-from enpointe.notation.score import Frame
+from enpointe.notation.frame import Frame
 from enpointe.notation.signs import (
     ArmsPosition,
     Depth,
@@ -152,7 +152,7 @@ class FrameBuilder:
             )
         if not entry.crossed and side is not None:
             raise self._fail(f"in {name} position no foot is in front; write only '{name}'", side)
-        self._feet = FeetPosition(name, _side(side) if side else None, at)
+        self._feet = FeetPosition(name, _side(side) if side else None, at=at)
 
     def _read_arms(self, line: Tree[Token]) -> None:
         keyword, side = _keyword(line), _token(line, "SIDE")
