@@ -59,13 +59,19 @@ def add_floor(spec: mujoco.MjSpec) -> None:
         solref=_SOLREF,
         solimp=_SOLIMP,
     )
+    directional = mujoco.mjtLightType.mjLIGHT_DIRECTIONAL
     spec.worldbody.add_light(
-        name="key", pos=[2.5, 2.0, 4.0], dir=[-0.5, -0.4, -0.77], diffuse=[0.42, 0.41, 0.38]
+        name="key",
+        type=directional,
+        pos=[2.5, 2.0, 5.0],
+        dir=[-0.4, -0.25, -0.88],
+        diffuse=[0.42, 0.41, 0.38],
     )
     spec.worldbody.add_light(
         name="fill",
+        type=directional,
         pos=[2.0, -3.0, 3.0],
-        dir=[-0.45, 0.65, -0.6],
+        dir=[-0.6, 0.55, -0.58],
         diffuse=[0.16, 0.17, 0.19],
         castshadow=False,
     )
