@@ -10,7 +10,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from enpointe.errors import FormatError
+from enpointe.errors import FormatError, MotionError
 from enpointe.files import atomic_path
 from enpointe.motion import Motion
 from enpointe.motion.npz import load_arrays, motion_arrays, motion_from_arrays
@@ -66,7 +66,13 @@ class Recording:
         return float(self.time[-1]) / self.wall_time if self.wall_time > 0 else float("inf")
 
     def as_motion(self) -> Motion:
-        """The performance as a motion of its own, to replay, compare or convert."""
+        """The performance as a motion of its own, to replay, compare or convert.
+
+        Raises:
+            MotionError: It ended before there were two samples.
+        """
+        if len(self.time) < 2:
+            raise MotionError(f"the performance ended at once: {self.fault or 'nothing was danced'}")
         acceleration = np.gradient(self.qvel, self.time, axis=0)
         return Motion(
             self.model,

@@ -101,8 +101,9 @@ def perform(
             progress=progress,
         )
         folder = _folder(out, source)
-        files = enpointe.write_report(dance, folder, video=video, progress=progress)
-        files |= dance.save(folder)
+        report = enpointe.write_report(dance, folder, video=video, progress=progress)
+        files = {**report, **dance.save(folder)}
+    console.warn(report.warning)
     console.show(dance.summary(), files, folder)
     return DONE if dance.completed and not dance.broken else NO
 
@@ -136,6 +137,7 @@ def compare(
         )
         folder = _folder(out, f"{Path(source).stem}-compared")
         files = enpointe.write_report(comparison, folder, video=video, progress=progress)
+    console.warn(files.warning)
     console.show(comparison.summary(), files, folder)
     return DONE if comparison.completed else NO
 
@@ -170,6 +172,7 @@ def pose(
         poses = enpointe.pose(source, style=_style(turnout), dancer=_dancer(height, mass, sex))
         folder = _folder(out, source)
         files = enpointe.write_report(poses, folder, progress=progress)
+    console.warn(files.warning)
     console.show(poses.summary(), files, folder)
     return DONE if poses.held else NO
 

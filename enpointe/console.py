@@ -65,6 +65,11 @@ class Console:
             report = files.get("report", folder)
             self._out.print(f"report: {report}")
 
+    def warn(self, message: str | None) -> None:
+        """A plain line on standard error, for what went another way than it should."""
+        if message and not self._quiet:
+            print(f"enpointe: {message}", file=sys.stderr)
+
     def list(self, names: Sequence[str]) -> None:
         """Names, one a line."""
         if self._json:

@@ -98,6 +98,8 @@ class Performance:
 
     def summary(self) -> dict[str, object]:
         """The figures that `--json` prints, SI units; the names are a promise to scripts."""
+        from enpointe.motion.arrival import danced_tempo
+
         danced = self.danced
         fit = self.danced_fit()
         figures: dict[str, object] = {
@@ -116,6 +118,8 @@ class Performance:
             "logistic": None if fit is None else {"b": fit.time, "x0": fit.weight, "rms": fit.rms},
         }
         if self.recording is not None and self.measures is not None:
+            kept, lateness = danced_tempo(danced, self.motion)
+            figures |= {"tempo_danced": kept, "lateness_max": lateness}
             figures |= _physical_figures(self.recording, self.measures)
         return figures
 

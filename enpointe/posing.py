@@ -58,6 +58,7 @@ class Poses:
                             "value": r.value,
                             "unit": r.unit,
                             "bound": r.bound,
+                            "at_least": r.at_least,
                             "held": r.held,
                         }
                         for r in p.certificate.results

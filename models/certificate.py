@@ -17,6 +17,7 @@ class RuleResult:
         unit: "mm" or "deg".
         bound: What still holds: at most this residual, or at least this margin.
         held: Whether it holds.
+        at_least: Whether the bound is a floor (a margin) rather than a ceiling (a residual).
         source: Where the rule is written down.
     """
 
@@ -26,6 +27,7 @@ class RuleResult:
     bound: float
     held: bool
     source: str
+    at_least: bool = False
 
 
 @dataclass(frozen=True, slots=True)

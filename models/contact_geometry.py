@@ -51,7 +51,7 @@ def add_floor(spec: mujoco.MjSpec) -> None:
     spec.worldbody.add_geom(
         name=FLOOR,
         type=mujoco.mjtGeom.mjGEOM_PLANE,
-        size=[6, 6, 0.1],
+        size=[20, 20, 0.1],
         material="boards",
         contype=_FLOOR_CLASS,
         conaffinity=SOLE_CLASS | _LIMB_CLASS,
@@ -59,14 +59,20 @@ def add_floor(spec: mujoco.MjSpec) -> None:
         solref=_SOLREF,
         solimp=_SOLIMP,
     )
+    directional = mujoco.mjtLightType.mjLIGHT_DIRECTIONAL
     spec.worldbody.add_light(
-        name="key", pos=[2.5, 2.0, 4.0], dir=[-0.5, -0.4, -0.77], diffuse=[0.6, 0.58, 0.55]
+        name="key",
+        type=directional,
+        pos=[2.5, 2.0, 5.0],
+        dir=[-0.4, -0.25, -0.88],
+        diffuse=[0.42, 0.41, 0.38],
     )
     spec.worldbody.add_light(
         name="fill",
+        type=directional,
         pos=[2.0, -3.0, 3.0],
-        dir=[-0.45, 0.65, -0.6],
-        diffuse=[0.25, 0.26, 0.30],
+        dir=[-0.6, 0.55, -0.58],
+        diffuse=[0.16, 0.17, 0.19],
         castshadow=False,
     )
 

@@ -75,6 +75,12 @@ def _set_options(spec: mujoco.MjSpec) -> None:
     # MuJoCo 4.0.0 gives Newton a wrong Hessian when the constraint Jacobian is sparse.
     spec.option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
     spec.compiler.degree = False
+    # Soft light from the eye: raised arms turn away from every lamp and would go dark.
+    spec.visual.headlight.ambient = [0.42, 0.41, 0.40]
+    spec.visual.headlight.diffuse = [0.34, 0.34, 0.34]
+    spec.visual.headlight.specular = [0.0, 0.0, 0.0]
+    # Wide enough that the shadow map's edge does not speckle the floor in the picture.
+    spec.visual.map.shadowclip = 4.0
     spec.visual.global_.offwidth = 1920
     spec.visual.global_.offheight = 1080
 

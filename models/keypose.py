@@ -253,4 +253,12 @@ def _result(rule: Rule, residual: NDArray[np.float64]) -> RuleResult:
     else:
         value = float(np.abs(scaled).max())
         held = value <= rule.bound
-    return RuleResult(rule.label, value, rule.unit, rule.bound, bool(held), rule.source)
+    return RuleResult(
+        rule.label,
+        value,
+        rule.unit,
+        rule.bound,
+        bool(held),
+        rule.source,
+        at_least=rule.kind is Kind.AT_LEAST,
+    )

@@ -1,0 +1,126 @@
+"""The film of a dance, or of several side by side."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from enpointe.performing import Performance
+from enpointe.report.ground import support_at
+from enpointe.report.pictures import ASPECT, fitted_view
+from enpointe.sim.camera import Overlays, View
+from enpointe.sim.render import gl_backend, open_painter
+from enpointe.sim.video import (
+    can_write_mp4,
+    film,
+    frame_samples,
+    side_by_side,
+    write_gif,
+    write_mp4,
+)
+
+__all__ = ["FilmFile", "film_of"]
+
+Progress = Callable[[str, float, float], None]
+HEIGHT_ONE, HEIGHT_SEVERAL = 600, 400
+FPS, FPS_SLOW = 20.0, 10.0
+"""Frames a second; slow for a GIF, which is large, and for the sketch painter, which is slow."""
+FRAMES_MAX, FRAMES_MAX_SKETCHED = 700, 250
+"""A long dance gets fewer frames a second instead of a film that takes minutes to paint."""
+FPS_MIN = 4.0
+SMALLER = 0.6
+"""Scale of a GIF and of a sketched film."""
+_FITTED_POSES = 40
+
+
+@dataclass(frozen=True, slots=True)
+class FilmFile:
+    """A film, written.
+
+    Attributes:
+        name: Of the file.
+        data: Its bytes.
+        mime: "video/mp4" or "image/gif".
+        size: Width and height, pixels.
+    """
+
+    name: str
+    data: bytes
+    mime: str
+    size: tuple[int, int]
+
+
+def film_of(performances: Mapping[str, Performance], progress: Progress) -> FilmFile:
+    """Film performances, side by side if there are several.
+
+    Args:
+        performances: By caption; a single one needs none.
+        progress: Told how many frames are painted.
+    """
+    mp4, sketched = can_write_mp4(), gl_backend() is None
+    several = len(performances) > 1
+    height = HEIGHT_SEVERAL if several else HEIGHT_ONE
+    if sketched or not mp4:
+        height = int(SMALLER * height)
+    width = round(ASPECT * height)
+    longest = max(p.danced.duration for p in performances.values())
+    wanted = FPS if mp4 and not sketched else FPS_SLOW
+    most = FRAMES_MAX_SKETCHED if sketched else FRAMES_MAX
+    affordable = most / (longest * len(performances))
+    fps = max(min(wanted, affordable), FPS_MIN)
+    motions = [p.danced for p in performances.values()]
+    view = _view(performances)
+    frames = sum(len(frame_samples(m.time, fps)) for m in motions)
+    painted = 0
+
+    def count(_done: int, _total: int) -> None:
+        nonlocal painted
+        painted += 1
+        progress("film", painted, frames)
+
+    # One painter serves all: contexts are dear, and the variants share the body.
+    painter, _ = open_painter(motions[0].model, width, height)
+    with painter, TemporaryDirectory() as folder:
+        reels = [
+            film(
+                motion.time,
+                motion.qpos,
+                painter,
+                view,
+                fps,
+                overlays=_overlays(performance),
+                progress=count,
+            )
+            for performance, motion in zip(performances.values(), motions, strict=True)
+        ]
+        pictures = side_by_side(reels, list(performances)) if several else reels[0]
+        first = next(pictures)
+        name = "dance.mp4" if mp4 else "dance.gif"
+        write = write_mp4 if mp4 else write_gif
+        path = write(Path(folder) / name, itertools.chain([first], pictures), fps)
+        data = path.read_bytes()
+    return FilmFile(name, data, "video/mp4" if mp4 else "image/gif", first.size)
+
+
+def _view(performances: Mapping[str, Performance]) -> View:
+    """From the audience, a little above so that the floor is seen."""
+    poses = []
+    for performance in performances.values():
+        qpos = performance.danced.qpos
+        some = np.unique(np.linspace(0, len(qpos) - 1, _FITTED_POSES).astype(int))
+        poses += list(qpos[some])
+    model = next(iter(performances.values())).motion.model
+    return fitted_view(model, poses, View(elevation=-9.0))
+
+
+def _overlays(performance: Performance) -> Callable[[int], Overlays | None] | None:
+    """The CoM's place on the floor and the support polygon, for a physical performance."""
+    recording = performance.recording
+    if recording is None:
+        return None
+    return lambda sample: Overlays(com=True, support=support_at(recording, sample))

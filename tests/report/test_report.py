@@ -1,0 +1,396 @@
+"""A report holds everything in itself, says honestly what was danced, and its figures are true."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+import re
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+from PIL import Image
+
+import enpointe.sim.render
+from enpointe.comparing import Comparison
+from enpointe.errors import EnpointeError
+from enpointe.models.certificate import Certificate
+from enpointe.performing import Performance
+from enpointe.posing import Poses
+from enpointe.report import ReportFiles, write_report
+
+from .pages import HOSTILE, read, words_of
+
+Dance = Performance | Comparison | Poses
+
+
+@pytest.fixture(scope="session")
+def reports(
+    tmp_path_factory: pytest.TempPathFactory,
+    physical: Performance,
+    kinematic: Performance,
+    fallen: Performance,
+    comparison: Comparison,
+    poses: Poses,
+) -> dict[str, ReportFiles]:
+    """A report of each kind, without a film."""
+    dances: dict[str, Dance] = {
+        "physical": physical,
+        "kinematic": kinematic,
+        "fallen": fallen,
+        "comparison": comparison,
+        "poses": poses,
+    }
+    return {
+        name: write_report(dance, tmp_path_factory.mktemp(name), video=False)
+        for name, dance in dances.items()
+    }
+
+
+KINDS = ("physical", "kinematic", "fallen", "comparison", "poses")
+
+
+def section_names(page: ElementTree.Element) -> list[str]:
+    return [section.attrib["id"] for section in page.iter("section")]
+
+
+def figures(page: ElementTree.Element) -> dict[str, list[tuple[float, str]]]:
+    """Values and texts of the rows that are figures of the summary."""
+    return {
+        row.attrib["data-figure"]: [
+            (float(data.attrib["value"]), words_of(data)) for data in row.iter("data")
+        ]
+        for row in page.iter("tr")
+        if "data-figure" in row.attrib
+    }
+
+
+@pytest.mark.parametrize("kind", KINDS)
+class TestEveryKind:
+    def test_the_files_exist_and_are_what_they_say(
+        self, reports: dict[str, ReportFiles], kind: str
+    ) -> None:
+        files = reports[kind]
+        assert set(files) == {"report", "stave", "key_poses"}
+        assert files["report"].name == "report.html"
+        assert ElementTree.parse(files["stave"]).getroot().tag.endswith("svg")
+        with Image.open(files["key_poses"]) as sheet:
+            assert sheet.format == "PNG"
+        written = {path.name for path in files["report"].parent.iterdir()}
+        assert written == {path.name for path in files.values()}
+
+    def test_nothing_is_asked_from_anywhere(
+        self, reports: dict[str, ReportFiles], kind: str
+    ) -> None:
+        page = read(reports[kind]["report"])
+        for element in page.iter():
+            assert element.tag not in ("link", "iframe", "object", "embed", "base")
+            for name, value in element.attrib.items():
+                if name.rpartition("}")[2] in ("src", "href", "srcset", "poster", "action"):
+                    assert value.startswith(("#", "data:")), (element.tag, name, value[:80])
+        text = reports[kind]["report"].read_text(encoding="utf-8")
+        assert all(target.startswith("#") for target in re.findall(r"url\(['\"]?([^)]*)", text))
+        assert "@import" not in text
+        namespaces = {"http://www.w3.org/1999/xhtml", "http://www.w3.org/2000/svg"}
+        assert set(re.findall(r"https?://[^\s\"'<>]+", text)) <= namespaces
+
+    def test_ids_differ_and_references_lead_somewhere(
+        self, reports: dict[str, ReportFiles], kind: str
+    ) -> None:
+        page = read(reports[kind]["report"])
+        ids = [e.attrib["id"] for e in page.iter() if "id" in e.attrib]
+        assert len(ids) == len(set(ids))
+        text = reports[kind]["report"].read_text(encoding="utf-8")
+        wanted = set(re.findall(r"url\(#([^)]+)\)", text))
+        wanted |= set(re.findall(r'href="#([^"]+)"', text))
+        assert wanted <= set(ids)
+
+    def test_pictures_and_tables_can_be_read_aloud(
+        self, reports: dict[str, ReportFiles], kind: str
+    ) -> None:
+        page = read(reports[kind]["report"])
+        assert all(image.attrib.get("alt") for image in page.iter("img"))
+        for drawing in page.iter("svg"):
+            named = drawing.attrib.get("aria-label") or drawing.findtext("title")
+            assert drawing.attrib.get("role") == "img"
+            assert named
+        for table in page.iter("table"):
+            assert words_of(table.findall("caption")[0])
+            widths = {len(list(row)) for row in table.iter("tr")}
+            assert len(widths) == 1
+            assert all("scope" in head.attrib for head in table.iter("th"))
+
+    def test_charts_style_nothing_but_themselves(
+        self, reports: dict[str, ReportFiles], kind: str
+    ) -> None:
+        page = read(reports[kind]["report"])
+        for drawing in page.iter("svg"):
+            assert not list(drawing.iter("style"))
+            assert not list(drawing.iter("metadata"))
+
+
+def test_sections_of_a_physical_performance(reports: dict[str, ReportFiles]) -> None:
+    assert section_names(read(reports["physical"]["report"])) == [
+        "figures",
+        "stave",
+        "poses",
+        "wrists",
+        "effort",
+        "balance",
+        "joints",
+        "certificates",
+    ]
+
+
+def test_a_kinematic_performance_has_no_physics_in_it(reports: dict[str, ReportFiles]) -> None:
+    page = read(reports["kinematic"]["report"])
+    assert section_names(page) == ["figures", "stave", "poses", "wrists", "effort", "certificates"]
+    assert "No physics" in words_of(verdict(page))
+    assert set(figures(page)) == {"duration", "tempo", "b", "x0", "space", "rms"}
+
+
+def test_sections_of_a_comparison(reports: dict[str, ReportFiles], comparison: Comparison) -> None:
+    page = read(reports["comparison"]["report"])
+    assert section_names(page) == [
+        "variants",
+        "stave",
+        "wrists",
+        "fits",
+        "figures",
+        "differences",
+        "poses",
+        "certificates",
+    ]
+    for variant in comparison.performances:
+        assert variant in words_of(page)
+
+
+def test_sections_and_pictures_of_poses(reports: dict[str, ReportFiles], poses: Poses) -> None:
+    page = read(reports["poses"]["report"])
+    assert section_names(page) == ["stave", "poses", "certificates"]
+    assert len(list(page.iter("img"))) == 3 * len(poses.key_poses)
+
+
+def verdict(page: ElementTree.Element) -> ElementTree.Element:
+    return next(e for e in page.iter() if e.attrib.get("id") == "verdict")
+
+
+def test_the_verdict_comes_first_and_is_honest(
+    reports: dict[str, ReportFiles], fallen: Performance
+) -> None:
+    for kind in KINDS:
+        page = read(reports[kind]["report"])
+        first = next(e for e in page.iter("main"))[0][0]
+        assert first is verdict(page)
+    assert "completed" in words_of(verdict(read(reports["physical"]["report"])))
+    assert "root was 0 N" in words_of(verdict(read(reports["physical"]["report"])))
+    said = words_of(verdict(read(reports["fallen"]["report"])))
+    assert "not completed" in said
+    assert fallen.measures is not None
+    assert f"{fallen.measures.fell_at:.2f} s" in said
+
+
+def test_help_on_the_root_is_told(physical: Performance, tmp_path: Path) -> None:
+    assert physical.measures is not None
+    helped = dataclasses.replace(
+        physical, measures=dataclasses.replace(physical.measures, root_force_max=12.5)
+    )
+    page = read(write_report(helped, tmp_path, video=False)["report"])
+    assert "not an honest dance" in words_of(verdict(page))
+    assert "12.5 N" in words_of(verdict(page))
+    assert verdict(page).attrib["class"] == "bad"
+
+
+SHOWN_PER_UNIT = {
+    "duration": ("s", 1.0),
+    "tempo": ("a minute", 1.0),
+    "fell_at": ("s", 1.0),
+    "root_force_max": ("N", 1.0),
+    "other_contact_max": ("N", 1.0),
+    "support_margin_min": ("mm", 1e3),
+    "slip_max": ("mm", 1e3),
+    "tracking_rms_deg": ("°", 1.0),
+    "torque_limit_fraction_max": ("%", 100.0),
+    "realtime_factor": ("× real time", 1.0),
+}
+
+
+@pytest.mark.parametrize("kind", ["physical", "fallen"])
+def test_figures_are_those_of_the_summary(
+    reports: dict[str, ReportFiles], physical: Performance, fallen: Performance, kind: str
+) -> None:
+    performance = {"physical": physical, "fallen": fallen}[kind]
+    page = read(reports[kind]["report"])
+    section = next(s for s in page.iter("section") if s.attrib["id"] == "figures")
+    summary = performance.summary()
+    numbers = {
+        name: value
+        for name, value in summary.items()
+        if name in SHOWN_PER_UNIT and value is not None
+    }
+    shown = figures(section)
+    assert set(shown) == set(numbers)
+    for name, value in numbers.items():
+        unit, scale = SHOWN_PER_UNIT[name]
+        assert isinstance(value, float | int)
+        [(exact, text)] = shown[name]
+        assert exact == float(value)
+        number, _, after = text.replace("°", " °").partition(" ")
+        assert after == unit
+        digits = len(number.partition(".")[2])
+        assert float(number) == pytest.approx(scale * value, abs=0.51 * 10.0**-digits, rel=5e-3)
+
+
+def test_effort_that_came_out_is_the_fit(
+    reports: dict[str, ReportFiles], physical: Performance
+) -> None:
+    page = read(reports["physical"]["report"])
+    section = next(s for s in page.iter("section") if s.attrib["id"] == "effort")
+    shown = figures(section)
+    asked, danced = physical.asked_fit(), physical.danced_fit()
+    assert asked is not None
+    assert danced is not None
+    assert [v for v, _ in shown["b"]] == [physical.effort.time, asked.time, danced.time]
+    assert [v for v, _ in shown["x0"]] == [physical.effort.weight, asked.weight, danced.weight]
+    assert [v for v, _ in shown["rms"]] == [asked.rms, danced.rms]
+
+
+def test_differences_are_those_of_the_comparison(
+    reports: dict[str, ReportFiles], comparison: Comparison
+) -> None:
+    shown = figures(read(reports["comparison"]["report"]))
+    for d in comparison.differences:
+        values = [value for value, _ in shown[f"difference-{d.first}-{d.second}"]]
+        assert values == [*d.wrist_path_rms.values(), d.joint_rms_deg]
+    margins = [value for value, _ in shown["support_margin_min"]]
+    measures = comparison.performances["physical"].measures
+    assert measures is not None
+    assert margins == [measures.support_margin_min]
+
+
+def test_broken_rules_stand_out(poses: Poses, tmp_path: Path) -> None:
+    first, *others = poses.key_poses
+    results = list(first.certificate.results)
+    results[0] = dataclasses.replace(results[0], value=9.5, held=False)
+    broken = dataclasses.replace(first, certificate=Certificate(tuple(results)))
+    page = read(
+        write_report(
+            dataclasses.replace(poses, key_poses=(broken, *others)), tmp_path, video=False
+        )["report"]
+    )
+    assert broken.name in words_of(verdict(page))
+    marked = [words_of(e) for e in page.iter() if e.attrib.get("class") == "broken"]
+    assert any("9.5" in text and results[0].rule in text for text in marked)
+    assert "9.5 broken" in marked
+
+
+@pytest.mark.parametrize("kind", ["kinematic", "poses"])
+def test_hostile_titles_are_words_and_nothing_else(
+    reports: dict[str, ReportFiles], kind: str
+) -> None:
+    page = read(reports[kind]["report"])
+    assert page.findtext("head/title") == HOSTILE.replace("\x08", "\ufffd")
+    text = reports[kind]["report"].read_text(encoding="utf-8")
+    assert "<script>alert" not in text
+    assert len(list(page.iter("script"))) == 1
+
+
+def test_film_is_in_the_page_and_beside_it(
+    physical: Performance, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("enpointe.report.films.FPS", 5.0)
+    told: list[tuple[str, float, float]] = []
+    files = write_report(physical, tmp_path, progress=lambda *args: told.append(args))
+    page = read(files["report"])
+    assert files["video"].stat().st_size > 1000
+    section = next(s for s in page.iter("section") if s.attrib["id"] == "film")
+    sources = [e.attrib["src"] for e in section.iter() if "src" in e.attrib]
+    assert len(sources) == 1
+    assert sources[0].startswith(("data:video/mp4;base64,", "data:image/gif;base64,"))
+    films = [(done, total) for task, done, total in told if task == "film"]
+    assert films
+    assert films[-1][0] == films[-1][1]
+
+
+def test_gif_where_mp4_cannot_be_written(
+    comparison: Comparison, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("enpointe.report.films.can_write_mp4", lambda: False)
+    monkeypatch.setattr("enpointe.report.films.FPS_SLOW", 5.0)
+    files = write_report(comparison, tmp_path)
+    assert files["video"].name == "dance.gif"
+    with Image.open(files["video"]) as film:
+        assert film.format == "GIF"
+        assert film.width > 2 * film.height
+    assert "<video" not in files["report"].read_text(encoding="utf-8")
+
+
+def test_without_opengl_one_line_says_so(
+    poses: Poses, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    line = "no OpenGL here; using the sketch renderer"
+    monkeypatch.setattr(enpointe.sim.render, "_find_backend", lambda: (None, line))
+    files = write_report(poses, tmp_path, video=False)
+    assert files.warning == line
+    page = read(files["report"])
+    assert [words_of(e) for e in page.iter() if e.attrib.get("id") == "warning"] == [line]
+
+
+def test_with_opengl_nothing_is_said(
+    reports: dict[str, ReportFiles],
+) -> None:
+    if enpointe.sim.render.gl_backend() is None:
+        pytest.skip("this machine has no OpenGL")
+    for files in reports.values():
+        assert files.warning is None
+        assert 'id="warning"' not in files["report"].read_text(encoding="utf-8")
+
+
+def test_a_file_on_the_way_is_one_line_and_nothing_is_left(poses: Poses, tmp_path: Path) -> None:
+    (tmp_path / "taken").write_text("mine", encoding="utf-8")
+    with pytest.raises(EnpointeError) as caught:
+        write_report(poses, tmp_path / "taken" / "deeper")
+    assert "\n" not in str(caught.value)
+    assert [p.name for p in tmp_path.iterdir()] == ["taken"]
+    assert (tmp_path / "taken").read_text(encoding="utf-8") == "mine"
+
+
+@pytest.mark.skipif(
+    not hasattr(os, "geteuid") or os.geteuid() == 0, reason="the superuser may write anywhere"
+)
+def test_a_folder_without_leave_is_one_line(poses: Poses, tmp_path: Path) -> None:
+    locked = tmp_path / "locked"
+    locked.mkdir(mode=0o555)
+    with pytest.raises(EnpointeError) as caught:
+        write_report(poses, locked / "out")
+    assert "\n" not in str(caught.value)
+    assert not list(locked.iterdir())
+
+
+def _break(*_: object, **__: object) -> None:
+    raise EnpointeError("the painter fainted")
+
+
+@pytest.mark.parametrize("existed", [False, True])
+def test_work_that_fails_leaves_nothing_behind(
+    poses: Poses,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    existed: bool,
+) -> None:
+    out = tmp_path if existed else tmp_path / "new" / "folder"
+    monkeypatch.setattr("enpointe.report.writing.stills", _break)
+    with pytest.raises(EnpointeError, match="fainted"):
+        write_report(poses, out)
+    assert not list(tmp_path.iterdir())
+
+
+def test_an_older_report_survives_work_that_fails(
+    poses: Poses, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write_report(poses, tmp_path)
+    before = {p.name: p.read_bytes() for p in tmp_path.iterdir()}
+    monkeypatch.setattr("enpointe.report.writing.render", _break)
+    with pytest.raises(EnpointeError, match="fainted"):
+        write_report(poses, tmp_path)
+    assert {p.name: p.read_bytes() for p in tmp_path.iterdir()} == before
