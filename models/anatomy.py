@@ -92,7 +92,9 @@ WRIST = (
 HIP = (
     Hinge("hip_raise", (_D, -_D, 0), (-115, 150), 4.2, 0.02, 0.5),
     Hinge("hip_cross", (-_D, -_D, 0), (-85, 85), 4.0, 0.02, 0.5),
-    Hinge("hip_turn", (0, 0, 1), (-40, 60), 2.0, 0.01, 0.3),
+    # Wide: with the leg raised, part of a turn of the thigh about itself shows up in this hinge and
+    # part in the two before it. The rule of the hip's rotation holds the anatomy.
+    Hinge("hip_turn", (0, 0, 1), (-70, 120), 2.0, 0.01, 0.3),
 )
 KNEE = (Hinge("knee_bend", (0, 1, 0), (-3, 150), 4.2, 0.01, 0.3),)
 ANKLE = (

@@ -119,13 +119,14 @@ class InAir:
         ankle: (3,), m.
         knee: (3,), m, or None for a stretched leg.
         turnout: rad.
-        pointed: How far the foot is pointed, 1 fully; less only on the way from the floor.
+        passing: Whether the leg is on its way: the foot then points as far as the floor lets it, and
+            the ankle keeps to its way as well as the floor lets it.
     """
 
     ankle: Vector
     knee: Vector | None
     turnout: float
-    pointed: float = 1.0
+    passing: bool = False
 
 
 LegTarget = Standing | OnPointe | ToeOnFloor | ToeOnLeg | InAir

@@ -18,7 +18,7 @@ from enpointe.models.stances import Ground, StanceTracker
 from enpointe.models.style import Style
 from enpointe.notation import ArmSigns, Orientation, ResolvedFrame, Side
 
-__all__ = ["ArmShape", "ArmTarget", "PoseTarget", "pose_target", "rounded_arm", "turn_tilt_bend"]
+__all__ = ["ALOFT", "ArmShape", "ArmTarget", "PoseTarget", "pose_target", "rounded_arm", "turn_tilt_bend"]
 
 Vector = NDArray[np.float64]
 
@@ -111,7 +111,7 @@ def _kind_of(leg: LegTarget) -> tuple[object, ...]:
     if isinstance(leg, ToeOnLeg):
         return (ToeOnLeg, leg.site)
     if isinstance(leg, InAir):
-        return (InAir, leg.knee is not None)
+        return (InAir, leg.knee is not None, leg.passing)
     if isinstance(leg, Standing):
         return (Standing, leg.knee_bend > 0)
     return (type(leg),)
@@ -166,13 +166,13 @@ def pose_target(
         body=_angles(frame.body),
         pelvis=_angles(frame.pelvis),
         facing=ground.facing,
-        com=None if floored else np.array([*ground.middle, _ALOFT * figure.lines[-1]]),
+        com=None if floored else np.array([*ground.middle, ALOFT * figure.lines[-1]]),
         real=style.real,
         name=name or f"beat {frame.beat}",
     )
 
 
-_ALOFT = 0.68
+ALOFT = 0.68
 """Where the centre of mass of a pose in the air is put, as a share of the stretched wrist's height,
 until a jump says better: a hand's breadth above a dancer on demi-pointe."""
 

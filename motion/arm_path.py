@@ -145,5 +145,7 @@ class ArmPath:
 
     @property
     def shape(self) -> ArmShape:
-        """How the arm is shaped on the way: as the key pose it goes to."""
-        return self.end.shape
+        """How the arm is shaped on the way: as the key pose it goes to, but rounded where a rounded
+        arm stretches or a stretched one rounds."""
+        shapes = {self.start.shape, self.end.shape}
+        return ArmShape.ROUNDED if shapes == {ArmShape.ROUNDED, ArmShape.STRAIGHT} else self.end.shape

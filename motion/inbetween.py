@@ -17,10 +17,12 @@ from scipy.interpolate import CubicSpline
 
 from enpointe.models.extremities import elbow_of_rounded_arm
 from enpointe.models.keypose import KeyPose, KeyPoseSolver
-from enpointe.models.target import ArmShape, ArmTarget, LegTarget, PoseTarget
+from enpointe.models.rules.balance import centroid
+from enpointe.models.target import ALOFT, ArmShape, ArmTarget, PoseTarget
 from enpointe.motion.arm_path import ArmPath
 from enpointe.motion.effort import Effort
 from enpointe.motion.inflection import inflected
+from enpointe.motion.leg_path import WEIGHT_SHIFT, LegPath
 from enpointe.motion.slerp import slerp_poses
 from enpointe.notation import Side
 
@@ -74,9 +76,6 @@ def solve_passage(
 ) -> Passage:
     """Solve the poses between two key poses.
 
-    Where a foot leaves or changes its place, legs and root go from pose to pose by rotation alone:
-    the rules of stepping are not in this solver.
-
     Args:
         solver: Of the dancer.
         start: Solved.
@@ -84,45 +83,102 @@ def solve_passage(
         effort: Its space draws the path, its weight bends the wrist.
         inflect: Let the wrists trail; False for the plain path.
     """
-    paths = {
-        side: ArmPath(
-            solver.figure, side, start.target.arms[side], end.target.arms[side], effort.space
-        )
-        for side in Side
-    }
-    legs_stay = all(_same_stance(start.target.legs[side], end.target.legs[side]) for side in Side)
+    way = _Way(solver, start, end, effort, inflect)
     between: list[KeyPose] = []
     guess = start.qpos
-    for step in range(1, INTERMEDIATE + 1):
-        share = step / (INTERMEDIATE + 1)
-        target = _target_at(paths, start.target, end.target, share, effort, solver, inflect)
-        pose = solver.solve(target, guess)
+    count = way.intermediate
+    for step in range(1, count + 1):
+        ahead = np.array([1.0 / (count + 2 - step)])
+        guess = slerp_poses(solver.model, guess, end.qpos, ahead)[0]
+        pose = solver.solve(way.at(step / (count + 1)), guess)
         guess = pose.qpos
-        between.append(pose if legs_stay else _with_legs(solver.model, pose, start, end, share))
+        between.append(pose)
     return Passage(start, end, tuple(between))
 
 
-def _target_at(
-    paths: dict[Side, ArmPath],
-    start: PoseTarget,
-    end: PoseTarget,
-    share: float,
-    effort: Effort,
-    solver: KeyPoseSolver,
-    inflect: bool,
-) -> PoseTarget:
-    arms = {
-        side: _arm_at(path, path.at_share(share), effort, solver, inflect)
-        for side, path in paths.items()
-    }
-    return replace(
-        start,
-        arms=arms,
-        head=(1 - share) * start.head + share * end.head,
-        body=(1 - share) * start.body + share * end.body,
-        pelvis=(1 - share) * start.pelvis + share * end.pelvis,
-        name=f"{start.name} to {end.name}, {share:.0%}",
-    )
+class _Way:
+    """What is asked between two key poses, at any share of the passage."""
+
+    def __init__(
+        self,
+        solver: KeyPoseSolver,
+        start: KeyPose,
+        end: KeyPose,
+        effort: Effort,
+        inflect: bool,
+    ) -> None:
+        self._solver, self._effort, self._inflect = solver, effort, inflect
+        self._start, self._end = start.target, end.target
+        self._arms = {
+            side: ArmPath(
+                solver.figure,
+                side,
+                _as_solved(solver.model, start, side),
+                _as_solved(solver.model, end, side),
+                effort.space,
+            )
+            for side in Side
+        }
+        self._legs = {side: LegPath(solver.model, side, start, end) for side in Side}
+
+    @property
+    def intermediate(self) -> int:
+        """Poses to solve on the way; a foot that leaves the floor or comes to it needs more."""
+        steps = any(path.leaves or path.arrives for path in self._legs.values())
+        return 2 * INTERMEDIATE + 1 if steps else INTERMEDIATE
+
+    def at(self, share: float) -> PoseTarget:
+        start, end = self._start, self._end
+
+        def blend(a: Array, b: Array) -> Array:
+            return (1 - share) * a + share * b
+
+        target = replace(
+            start,
+            arms={
+                side: _arm_at(path, path.at_share(share), self._effort, self._solver, self._inflect)
+                for side, path in self._arms.items()
+            },
+            legs={side: path.at(share) for side, path in self._legs.items()},
+            head=blend(start.head, end.head),
+            body=blend(start.body, end.body),
+            pelvis=blend(start.pelvis, end.pelvis),
+            facing=(1 - share) * start.facing + share * end.facing,
+            com=None,
+            name=f"{start.name} to {end.name}, {share:.0%}",
+        )
+        return replace(target, **self._balance(target, share))
+
+    def _balance(self, target: PoseTarget, share: float) -> dict[str, Array]:
+        """Where the weight is: over the feet that stay, before others leave and after they come."""
+        if len(target.support) == 0:
+            return {"com": _between_coms(self._start, self._end, share)}
+        if len(self._start.support) == 0 or len(self._end.support) == 0:
+            return {}
+        leaving = any(path.leaves for path in self._legs.values())
+        arriving = any(path.arrives for path in self._legs.values())
+        low = 0.0 if leaving or not arriving else 1.0 - WEIGHT_SHIFT
+        high = 1.0 if arriving or not leaving else WEIGHT_SHIFT
+        moved = float(np.clip((share - low) / (high - low), 0.0, 1.0))
+        first, last = centroid(self._start.support), centroid(self._end.support)
+        return {"weight": (1 - moved) * first + moved * last}
+
+
+def _between_coms(start: PoseTarget, end: PoseTarget, share: float) -> Array:
+    """A first guess for the air, until a jump's parabola says better: straight from pose to pose."""
+    ends = [
+        pose.com
+        if pose.com is not None
+        else np.array([*centroid(pose.support), ALOFT * pose.figure.lines[-1]])
+        for pose in (start, end)
+    ]
+    return np.asarray((1 - share) * ends[0] + share * ends[1])
+
+
+def _as_solved(model: mujoco.MjModel, pose: KeyPose, side: Side) -> ArmTarget:
+    """An arm with the forearm as the solver turned it: a straight arm leaves that to the palm."""
+    turn = float(pose.qpos[model.joint(f"{side}_forearm_turn").qposadr[0]])
+    return replace(pose.target.arms[side], forearm_turn=turn)
 
 
 def _arm_at(
@@ -133,14 +189,15 @@ def _arm_at(
         name: (1 - k) * getattr(path.start, name) + k * getattr(path.end, name)
         for name in ("wrist_bend", "wrist_cross", "forearm_turn")
     }
-    if path.shape is ArmShape.WRITTEN:
+    shape = path.shape
+    if shape is ArmShape.WRITTEN:
         elbow = _between_elbows(path, k, solver)
-    elif path.shape is ArmShape.ROUNDED:
+    elif shape is ArmShape.ROUNDED:
         elbow = elbow_of_rounded_arm(solver.figure, path.side, wrist)
     else:
         elbow = (1 - k) * path.start.elbow + k * path.end.elbow
-    arm = ArmTarget(path.shape, path.start.shoulder, wrist, elbow, **blend)
-    if not inflect or path.waits or path.shape is ArmShape.STRAIGHT:
+    arm = ArmTarget(shape, path.start.shoulder, wrist, elbow, **blend)
+    if not inflect or path.waits or shape is ArmShape.STRAIGHT:
         return arm
     bend, cross = inflected(arm, path.side, path.heading(k), k, effort.weight)
     return replace(arm, wrist_bend=bend, wrist_cross=cross)
@@ -150,29 +207,6 @@ def _between_elbows(path: ArmPath, k: float, solver: KeyPoseSolver) -> Array:
     """An elbow on its way to a written place, kept at its distance from the shoulder."""
     elbow = (1 - k) * path.start.elbow + k * path.end.elbow - path.start.shoulder
     return path.start.shoulder + solver.figure.upper_arm * elbow / np.linalg.norm(elbow)
-
-
-def _same_stance(a: LegTarget, b: LegTarget) -> bool:
-    if a.footprint is None or b.footprint is None or a.knee is not None or b.knee is not None:
-        return False
-    return (
-        float(np.linalg.norm(a.footprint.ankle - b.footprint.ankle)) < 1e-9
-        and abs(a.footprint.direction - b.footprint.direction) < 1e-9
-    )
-
-
-def _with_legs(
-    model: mujoco.MjModel, pose: KeyPose, start: KeyPose, end: KeyPose, share: float
-) -> KeyPose:
-    turned = slerp_poses(model, start.qpos, end.qpos, np.array([share]))[0]
-    qpos = pose.qpos.copy()
-    for j in range(model.njnt):
-        name = model.joint(j).name
-        if name == "root" or any(p in name for p in ("hip", "knee", "ankle", "toe")):
-            address = model.joint(j).qposadr[0]
-            width = 7 if name == "root" else 1
-            qpos[address : address + width] = turned[address : address + width]
-    return replace(pose, qpos=qpos)
 
 
 def _continuous(qpos: Array) -> Array:

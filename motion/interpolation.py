@@ -13,7 +13,9 @@ from scipy.signal.windows import parzen
 
 from enpointe.errors import MotionError
 from enpointe.models.keypose import KeyPose, KeyPoseSolver
-from enpointe.models.target import Style, pose_target
+from enpointe.models.stances import StanceTracker
+from enpointe.models.style import Style
+from enpointe.models.target import pose_target
 from enpointe.motion.effort import Effort, logistic
 from enpointe.motion.inbetween import Passage, solve_passage
 from enpointe.motion.kind import Interpolation
@@ -88,7 +90,11 @@ def solve_key_poses(
     """
     frames = score.resolved()
     score.duration(tempo)
-    targets = [pose_target(frame, solver.figure, style, source=score.source) for frame in frames]
+    tracker = StanceTracker(solver.figure, (style or Style()).turnout_deg)
+    targets = [
+        pose_target(frame, solver.figure, style, ground=tracker.follow(frame), source=score.source)
+        for frame in frames
+    ]
     if len(targets) < 2:
         raise MotionError(f"{score.title!r} has one frame; a motion needs two at least")
     poses = []

@@ -1,271 +1,238 @@
-"""Builds one frame from the lines under its beat, refusing what contradicts itself."""
+"""Builds one frame from the lines under its beat."""
 
 from __future__ import annotations
 
-import math
-import re
-from collections.abc import Iterable
 from fractions import Fraction
 
 from lark import Token, Tree
 
-from enpointe.errors import ScoreError
+from enpointe.notation.amounts import DEFAULT_DEGREES, MAX_DEGREES
+from enpointe.notation.draft import Draft
 from enpointe.notation.frame import Frame
+from enpointe.notation.limb_lines import read_leg, read_limb, read_path, read_stance
+from enpointe.notation.macros import Vocabulary, laid_under
+from enpointe.notation.mirror import mirrored
+from enpointe.notation.movement import Limb
+from enpointe.notation.reading import (
+    Reader,
+    location,
+    number,
+    side_of,
+    token_of,
+    tokens_of,
+    trees_of,
+    words_of,
+)
 from enpointe.notation.signs import (
     ArmsPosition,
-    Depth,
     FeetPosition,
     Location,
     Orientation,
+    PosePosition,
     Side,
-    Sign,
 )
-from enpointe.notation.vocabulary import Part, find_arms, find_feet, names, nearest
+from enpointe.notation.spelling import fold
+from enpointe.notation.stage_lines import (
+    read_face,
+    read_jump,
+    read_place,
+    read_travel,
+    read_turn,
+)
+from enpointe.notation.vocabulary import (
+    Part,
+    find_arms,
+    find_feet,
+    find_pose,
+    names,
+    nearest,
+)
 from enpointe.notation.wording import either
 
-__all__ = ["DEFAULT_DEGREES", "HEIGHTS", "MAX_DEGREES", "WIDTHS", "FrameBuilder", "number"]
-
-HEIGHTS = (1.0, 6.0)
-"""Lowest and highest sign, in stave lines: the floor, and a stretched wrist overhead (signs.py)."""
-
-WIDTHS = (-1.0, 1.0)
-"""Widest crossed and open sign: nothing reaches further than its full reach."""
-
-MAX_DEGREES = 90.0
-"""Largest turn, tilt or bend of head, body or pelvis; the models know a body's own limits."""
-
-DEFAULT_DEGREES = {
-    ("head", "turn"): 45.0,
-    ("head", "tilt"): 15.0,
-    ("head", "bend"): 15.0,
-    ("body", "turn"): 15.0,
-    ("body", "tilt"): 10.0,
-    ("body", "bend"): 10.0,
-    ("pelvis", "turn"): 10.0,
-    ("pelvis", "tilt"): 10.0,
-    ("pelvis", "bend"): 10.0,
-}
-"""Degrees meant by a direction without an amount. The signs give a direction only, and Neagle (2005
-§4.4.5) took each joint's limit; no source prints amounts for ballet. These are ours, modest
-ones."""
-
-_NUMBER = re.compile(r"[+-]?(?:[0-9]{1,9}(?:\.[0-9]{0,20})?|\.[0-9]{1,20})(?:[eE][+-]?[0-9]{1,3})?")
-
-
-def number(text: str) -> float | None:
-    """The finite number that the text is, or None."""
-    text = text.replace("\u2212", "-")
-    if not _NUMBER.fullmatch(text):
-        return None
-    value = float(text)
-    return value if math.isfinite(value) else None
+__all__ = ["FrameBuilder"]
 
 
 class FrameBuilder:
     """Gathers the lines of one frame.
 
     Args:
-        source: The name to give in error messages.
+        reader: Refuses what is wrong.
+        vocabulary: The user's own names.
     """
 
-    def __init__(self, source: str | None) -> None:
-        self._source = source
-        self._written: dict[str, Location] = {}
-        self._feet: FeetPosition | None = None
-        self._arms: ArmsPosition | None = None
-        self._signs: dict[str, dict[Side, Sign]] = {"hand": {}, "elbow": {}, "foot": {}, "knee": {}}
-        self._parts: dict[str, Orientation] = {}
+    def __init__(self, reader: Reader, vocabulary: Vocabulary) -> None:
+        self._reader = reader
+        self._vocabulary = vocabulary
+        self._draft = Draft(reader)
+        self._under: Frame | None = None
 
     def add(self, line: Tree[Token]) -> None:
-        """Takes one parsed line: feet, arms, limb or orientation.
+        """Takes one parsed line.
 
         Raises:
             ScoreError: The line is wrong in itself or contradicts an earlier one.
         """
-        readers = {
-            "feet": self._read_feet,
-            "arms": self._read_arms,
-            "limb": self._read_limb,
-            "orientation": self._read_orientation,
-        }
-        readers[str(line.data)](line)
+        kind = str(line.data)
+        if kind in _LINES:
+            _LINES[kind](self._draft, line)
+        else:
+            getattr(self, f"_read_{kind}")(line)
 
-    def frame(self, beat: Fraction, at: Location) -> Frame:
-        """The frame of all lines taken."""
-        return Frame(
-            beat,
-            self._feet,
-            self._arms,
-            self._signs["hand"],
-            self._signs["elbow"],
-            self._signs["foot"],
-            self._signs["knee"],
-            self._parts.get("head"),
-            self._parts.get("body"),
-            self._parts.get("pelvis"),
-            at,
-        )
+    def frame(self, beat: Fraction, at: Location, before: Frame | None) -> Frame:
+        """The frame of all lines taken; `before` is the one before it, None for the first.
 
-    def _fail(self, message: str, at: Token | Location) -> ScoreError:
-        return ScoreError(message, at.line or 1, at.column or 1, self._source)
+        Raises:
+            ScoreError: Its parts contradict each other.
+        """
+        frame = self._draft.frame(beat, at, before)
+        return frame if self._under is None else laid_under(self._under, frame)
 
-    def _claim(self, part: str, at: Location, against: Iterable[str] = ()) -> None:
-        """Notes that the frame writes this part; refuses it twice or against another."""
-        for other in (part, *against):
-            earlier = self._written.get(other)
-            if earlier is not None and other == part:
-                raise self._fail(
-                    f"'{part}' is already written in this frame, on line {earlier.line}; keep one",
-                    at,
-                )
-            if earlier is not None:
-                raise self._fail(
-                    f"'{part}' contradicts '{other}' on line {earlier.line}; keep one of them",
-                    at,
-                )
-        self._written[part] = at
-
-    def _name(self, node: Tree[Token], part: Part) -> tuple[str, Location]:
-        name = next(child for child in node.children if isinstance(child, Tree))
-        words = [word for word in name.children if isinstance(word, Token)]
-        text, at = " ".join(words), _at(words[0])
-        entry = find_arms(text) if part == "arms" else find_feet(text)
-        if entry is None:
-            close = nearest(text, part)
-            hint = (
-                f"did you mean {either(close)}?" if close else f"known are {', '.join(names(part))}"
-            )
-            raise self._fail(f"'{text[:60]}' is not a position of the {part}; {hint}", at)
-        return entry.name, at
+    def _unknown(self, text: str, part: Part, at: Token) -> Exception:
+        close = (*self._vocabulary.nearest(text, part), *nearest(text, part))[:3]
+        hint = f"did you mean {either(close)}?" if close else f"known are {', '.join(names(part))}"
+        whole = "the whole body" if part == "pose" else f"the {part}"
+        return self._reader.fail(f"'{text[:60]}' is not a position of {whole}; {hint}", at)
 
     def _read_feet(self, line: Tree[Token]) -> None:
-        keyword, side = _keyword(line), _token(line, "SIDE")
-        self._claim("feet", _at(keyword), ("left foot", "right foot"))
-        name, at = self._name(line, "feet")
-        entry = find_feet(name)
-        assert entry is not None
+        keyword, side = tokens_of(line)[0], token_of(line, "SIDE")
+        name, *items = trees_of(line)
+        first = tokens_of(name)[0]
+        self._draft.claim("feet", location(keyword))
+        words = words_of(name).split()
+        is_open = len(words) > 1 and fold(words[-1]) in ("open", "ouverte")
+        closed = len(words) > 1 and fold(words[-1]) in ("closed", "croisee")
+        text = " ".join(words[:-1] if is_open or closed else words)
+        entry = find_feet(text)
+        if entry is None:
+            raise self._unknown(text, "feet", first)
+        if (is_open or closed) and not entry.has_open:
+            raise self._reader.fail(
+                f"{entry.name} position has no open or closed form; write only '{entry.name}'",
+                first,
+            )
         if entry.crossed and side is None:
-            raise self._fail(
-                f"{name} position of the feet needs the foot in front; "
-                f"write '{name} right front' or '{name} left front'",
-                at,
+            raise self._reader.fail(
+                f"{entry.name} position of the feet needs the foot in front; "
+                f"write '{entry.name} right front' or '{entry.name} left front'",
+                first,
             )
         if not entry.crossed and side is not None:
-            raise self._fail(f"in {name} position no foot is in front; write only '{name}'", side)
-        self._feet = FeetPosition(name, _side(side) if side else None, at=at)
+            raise self._reader.fail(
+                f"in {entry.name} position no foot is in front; write only '{entry.name}'", side
+            )
+        front = side_of(side) if side else None
+        self._draft.feet = FeetPosition(entry.name, front, is_open, location(first))
+        if items:
+            self._read_stances(items, location(keyword))
+
+    def _read_stances(self, items: list[Tree[Token]], at: Location) -> None:
+        stance = read_stance(self._draft, items, at)
+        if stance is None:
+            token = tokens_of(items[0])[0]
+            raise self._reader.fail(
+                f"'{words_of(items[0])[:60]}' is not a way for both feet to stand; write a bend "
+                "such as 'demi-plié' or a contact such as 'demi-pointe'",
+                token,
+            )
+        for side in Side:
+            self._draft.claim(f"{side} support", at)
+            self._draft.support[side] = stance
 
     def _read_arms(self, line: Tree[Token]) -> None:
-        keyword, side = _keyword(line), _token(line, "SIDE")
-        self._claim(
-            "arms",
-            _at(keyword),
-            [f"{each} {limb}" for limb in ("hand", "elbow") for each in ("left", "right")],
-        )
-        name, at = self._name(line, "arms")
-        entry = find_arms(name)
-        assert entry is not None
+        keyword, side = tokens_of(line)[0], token_of(line, "SIDE")
+        name, *paths = trees_of(line)
+        text, first = words_of(name), tokens_of(name)[0]
+        self._draft.claim("arms", location(keyword))
+        for node in paths:
+            path = read_path(self._draft, node)
+            for each in Side:
+                self._draft.claim(f"path of the {each} hand", location(keyword))
+                self._draft.paths[Limb.of(each, "hand")] = path
+        macro = self._vocabulary.find(text, "arms")
+        if macro is not None:
+            frame = mirrored(macro) if side and side_of(side) is Side.LEFT else macro
+            self._draft.hands.update(frame.hands)
+            self._draft.elbows.update(frame.elbows)
+            self._draft.contacts.update(frame.contacts)
+            return
+        entry = find_arms(text)
+        if entry is None:
+            raise self._unknown(text, "arms", first)
         if entry.needs_leading and side is None:
-            raise self._fail(
-                f"'{name}' needs the arm that leads ({entry.description}); "
-                f"write '{name} right leads' or '{name} left leads'",
-                at,
+            raise self._reader.fail(
+                f"'{entry.name}' needs the arm that leads ({entry.description}); "
+                f"write '{entry.name} right leads' or '{entry.name} left leads'",
+                first,
             )
         if not entry.needs_leading and side is not None:
-            raise self._fail(f"in '{name}' both arms do the same; leave out '{side}'", side)
-        self._arms = ArmsPosition(name, _side(side) if side else None, at)
-
-    def _read_limb(self, line: Tree[Token]) -> None:
-        keyword, limb = _keyword(line), _token(line, "LIMB")
-        assert limb is not None
-        side, kind = _side(keyword), str(limb.lower())
-        whole = {"hand": ("arms",), "elbow": ("arms",), "foot": ("feet",), "knee": ()}[kind]
-        self._claim(f"{side} {kind}", _at(keyword), whole)
-        seen: dict[str, float | str] = {}
-        for item in line.children[2:]:
-            self._read_item(item, kind, seen, f"{side} {kind}")
-        for needed, example in (("width", "0.8 wide"), ("height", "4 high"), ("depth", "front")):
-            if needed not in seen:
-                raise self._fail(
-                    f"the {side} {kind} lacks its {needed}; write all three, such as "
-                    f"'{side} {kind}: 0.8 wide, 4 high, front' (here add '{example}')",
-                    keyword,
-                )
-        opposite = {"hand": "elbow", "elbow": "hand"}.get(kind)
-        pair = self._signs[opposite].get(side) if opposite else None
-        if (kind == "elbow" and pair and pair.straight) or (pair and "straight" in seen):
-            raise self._fail(
-                f"the {side} arm can't be straight and bent at the elbow in one frame", keyword
+            raise self._reader.fail(
+                f"in '{entry.name}' both arms do the same; leave out '{side}'", side
             )
-        self._signs[kind][side] = Sign(
-            float(seen["width"]),
-            float(seen["height"]),
-            Depth(str(seen["depth"])),
-            "straight" in seen,
-            _at(keyword),
-        )
+        leading = side_of(side) if side else None
+        self._draft.arms = ArmsPosition(entry.name, leading, location(first))
 
-    def _read_item(
-        self, item: Tree[Token] | Token, kind: str, seen: dict[str, float | str], who: str
-    ) -> None:
-        if isinstance(item, Tree):
-            token = item.children[0]
-            assert isinstance(token, Token)
-            name = str(item.data)
-            lowest, highest = HEIGHTS if name == "height" else WIDTHS
-            value: float | str = self._number(token)
-            if not lowest <= float(value) <= highest:
-                meaning = (
-                    "from the floor (1) to a wrist stretched overhead (6)"
-                    if name == "height"
-                    else "as a fraction of the full reach, negative when crossed"
-                )
-                raise self._fail(
-                    f"{name} {token[:20]} is out of reach; "
-                    f"write {lowest:g} to {highest:g}, {meaning}",
-                    token,
-                )
-        else:
-            token, value = item, str(item.lower())
-            name = "straight" if item.type == "STRAIGHT" else "depth"
-            if name == "straight" and kind != "hand":
-                raise self._fail("only a hand can be written 'straight'; leave it out", token)
-        if name in seen:
-            raise self._fail(f"the {name} of the {who} is written twice; keep one", token)
-        seen[name] = value
+    def _read_leg(self, line: Tree[Token]) -> None:
+        keyword = tokens_of(line)[0]
+        side = side_of(keyword)
+        macro = self._vocabulary.find(words_of(next(trees_of(line))), "leg")
+        if macro is None:
+            read_leg(self._draft, line)
+            return
+        frame = macro if side is Side.RIGHT else mirrored(macro)
+        self._draft.claim(f"{side} leg", location(keyword))
+        self._draft.foot_signs.update(frame.foot_signs)
+        self._draft.knees.update(frame.knees)
+        self._draft.support.update(frame.support)
 
-    def _number(self, token: Token) -> float:
-        value = number(str(token))
-        if value is None:
-            raise self._fail(f"'{token[:40]}' is not a number that a sign can have", token)
-        return value
+    def _read_pose(self, line: Tree[Token]) -> None:
+        keyword, side = tokens_of(line)[0], token_of(line, "SIDE")
+        name = next(trees_of(line))
+        text, first = words_of(name), tokens_of(name)[0]
+        self._draft.claim("pose", location(keyword))
+        macro = self._vocabulary.find(text, "pose")
+        if macro is not None:
+            left = side is not None and side_of(side) is Side.LEFT
+            self._under = mirrored(macro) if left else macro
+            return
+        entry = find_pose(text)
+        if entry is None:
+            raise self._unknown(text, "pose", first)
+        if side is None:
+            raise self._reader.fail(
+                f"'{entry.name}' needs the leg to stand on; "
+                f"write '{entry.name} on left' or '{entry.name} on right'",
+                first,
+            )
+        self._draft.pose = PosePosition(entry.name, side_of(side), location(first))
 
     def _read_orientation(self, line: Tree[Token]) -> None:
-        keyword = _keyword(line)
+        keyword = tokens_of(line)[0]
         part = str(keyword.lower())
-        self._claim(part, _at(keyword))
+        self._draft.claim(part, location(keyword))
         amounts: dict[str, float] = {}
-        for item in line.children[1:]:
-            if isinstance(item, Token):
-                continue
-            tokens = [token for token in item.children if isinstance(token, Token)]
+        for item in trees_of(line):
+            tokens = tokens_of(item)
             bend = item.data == "bend"
             kind = "bend" if bend else str(tokens[0].lower())
             direction, *amount = tokens if bend else tokens[1:]
             if kind in amounts:
-                raise self._fail(f"the {kind} of the {part} is written twice; keep one", tokens[0])
+                raise self._reader.fail(
+                    f"the {kind} of the {part} is written twice; keep one", tokens[0]
+                )
             degrees = self._degrees(amount[0]) if amount else DEFAULT_DEGREES[part, kind]
-            amounts[kind] = degrees if direction.lower() in ("left", "forward") else -degrees
-        self._parts[part] = Orientation(
+            amounts[kind] = degrees if direction.lower() in ("left", "forward") else 0.0 - degrees
+        orientation = Orientation(
             amounts.get("turn", 0.0),
             amounts.get("tilt", 0.0),
             amounts.get("bend", 0.0),
-            _at(keyword),
+            location(keyword),
         )
+        setattr(self._draft, part, orientation)
 
     def _degrees(self, token: Token) -> float:
         value = number(str(token))
         if value is None or not 0.0 <= value <= MAX_DEGREES:
-            raise self._fail(
+            raise self._reader.fail(
                 f"'{token[:40]}' is not an amount; write degrees from 0 to {MAX_DEGREES:g}, "
                 "with the direction in words",
                 token,
@@ -273,21 +240,11 @@ class FrameBuilder:
         return value
 
 
-def _keyword(line: Tree[Token]) -> Token:
-    keyword = line.children[0]
-    assert isinstance(keyword, Token)
-    return keyword
-
-
-def _token(line: Tree[Token], kind: str) -> Token | None:
-    return next(
-        (each for each in line.children if isinstance(each, Token) and each.type == kind), None
-    )
-
-
-def _side(token: Token) -> Side:
-    return Side(token.lower())
-
-
-def _at(token: Token) -> Location:
-    return Location(token.line or 1, token.column or 1)
+_LINES = {
+    "limb": read_limb,
+    "face": read_face,
+    "place": read_place,
+    "travel": read_travel,
+    "turn": read_turn,
+    "jump": read_jump,
+}

@@ -22,7 +22,8 @@ def disc(radius: float) -> str:
 def oval(wide: float, high: float, lean: float) -> str:
     """Outline of an oval about the origin whose right end is raised by `lean` radians."""
     c, s, k = math.cos(lean), math.sin(lean), 0.5523
-    corners = ((1, 0), (1, k), (k, 1), (0, 1), (-k, 1), (-1, k), (-1, 0))
+    corners: list[tuple[float, float]] = []
+    corners += ((1, 0), (1, k), (k, 1), (0, 1), (-k, 1), (-1, k), (-1, 0))
     corners += ((-1, -k), (-k, -1), (0, -1), (k, -1), (1, -k), (1, 0))
     points = [
         f"{x * wide * c + y * high * s:.3f} {-x * wide * s + y * high * c:.3f}" for x, y in corners

@@ -67,6 +67,10 @@ _EXTREMITY = "Neagle 2005 §4.3; Wikipedia, Benesh Movement Notation"
 _BEND = "everything2, Benesh Notation; Neagle 2005 §4.3"
 _LEAN_SOURCE = "a line in the space of its part (Wikipedia); its slant is inferred"
 _VIA_SOURCE = "Neagle 2005 §5.2.1"
+_LINE = "such lines exist (Neagle 2005 §5.2.1); how they run is ours"
+_LOCOMOTION = "such lines link the feet (benesh.org, Giselle act 1); shape and side are ours"
+_FACING = "readable as an arrow to where the dancer faces (benesh.org, Giselle act 1)"
+_COUNTED = "so counted by a trained notator (Ballet Alert 11260)"
 _REPEAT = (
     "matching vertical signs with dashes inside (benesh.org, Giselle act 1); the dashes are ours"
 )
@@ -108,7 +112,9 @@ GLYPHS: Mapping[str, Glyph] = {
     "crossed right": Glyph(
         "the sign is the right limb's, across the centre line", "M-.3 .24L.3 -.24", weight=0.06
     ),
-    "straight": Glyph("the arm is stretched, not rounded", "M-.17 -.38L0 -.54L.17 -.38", weight=0.055),
+    "straight": Glyph(
+        "the arm is stretched, not rounded", "M-.17 -.38L0 -.54L.17 -.38", weight=0.055
+    ),
     "contact left": Glyph(
         "the left hand touches the body", "M.2 -.3C.54 -.24 .54 .24 .2 .3", weight=0.06
     ),
@@ -149,13 +155,14 @@ GLYPHS: Mapping[str, Glyph] = {
     "bend": _leaning("bent: at the foot of the stem forward, at its head back", "M-.2 0L.2 0"),
     # Movement lines, and what they pass through on the way
     "path straight": Glyph(
-        "the limb goes straight there", "M0 0L1 0", weight=PATH_WEIGHT, along="whole"
+        "the limb goes straight there", "M0 0L1 0", weight=PATH_WEIGHT, along="whole", source=_LINE
     ),
     "path circular": Glyph(
         "the limb goes there in an arc",
         "M0 0C.22 -.26 .78 -.26 1 0",
         weight=PATH_WEIGHT,
         along="whole",
+        source=_LINE,
     ),
     "via front": Glyph(
         "through the front: a tick across the line",
@@ -171,17 +178,23 @@ GLYPHS: Mapping[str, Glyph] = {
         "the foot steps: an arc over the floor line",
         fill="M0 -.1C.25 -.62 .75 -.62 1 -.1C.75 -.5 .25 -.5 0 -.1Z",
         along="across",
+        source=_LOCOMOTION,
     ),
     "locomotion slides": Glyph(
-        "the foot slides: a line under the floor line", "M0 .12L1 .12", weight=0.09, along="across"
+        "the foot slides: a line under the floor line",
+        "M0 .12L1 .12",
+        weight=0.09,
+        along="across",
+        source=_LOCOMOTION,
     ),
     "locomotion jumps": Glyph(
         "the dancer jumps: an arc below the stave, from take-off to landing",
         fill="M0 .8C.22 1.55 .78 1.55 1 .8C.78 1.4 .22 1.4 0 .8Z",
         along="across",
+        source=_LOCOMOTION,
     ),
     # Above the stave
-    "half": Glyph("half a beat later", text="&", size=0.9),
+    "half": Glyph("half a beat later", text="&", size=0.9, source=_COUNTED),
     "quarter": Glyph("a quarter of a beat later", "M0 -.52L0 -.02", weight=0.08),
     "three quarters": Glyph(
         "three quarters of a beat later",
@@ -251,7 +264,9 @@ GLYPHS: Mapping[str, Glyph] = {
         source="as in music: bars of rest",
     ),
     # Below the stave; up the page is towards the audience
-    "facing": Glyph("faces this way", "M0 .55L0 -.1", "M0 -.6L.2 -.02L-.2 -.02Z", weight=0.09),
+    "facing": Glyph(
+        "faces this way", "M0 .55L0 -.1", "M0 -.6L.2 -.02L-.2 -.02Z", weight=0.09, source=_FACING
+    ),
     "stage": Glyph(
         "the stage from above, the audience along its heavy side",
         "M-.7 -.5L-.7 .5L.7 .5L.7 -.5",

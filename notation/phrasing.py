@@ -7,13 +7,36 @@ it: "& 1" belongs to count 1. So counts 1 to 4 are everything after beat 0 up to
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from math import log1p
 
 from enpointe.notation.signs import Location
 
-__all__ = ["Phrase", "Repeat"]
+__all__ = ["EFFORTS", "EFFORT_FACTORS", "Phrase", "Repeat", "effort_text"]
+
+EFFORTS = ("natural", "happy", "sad", "angry", "afraid")
+"""Qualities by name: those that Neagle (2005 §5.5) measured."""
+
+EFFORT_FACTORS: Mapping[str, tuple[float, float]] = {
+    "time": (-4.0, -2.0),
+    "weight": (0.3, 0.8),
+    "space": (0.0, 1.0),
+}
+"""Laban's factors of effort and the ranges of their numbers (Neagle 2005 §5.4): time from sudden to
+sustained, weight from heavy to light, space from indirect to direct."""
+
+
+def effort_text(factors: Mapping[str, float]) -> str:
+    """Factors as a phrase keeps them: "time=-3.5,weight=0.41,space=1", those left out unchanged."""
+    return ",".join(
+        f"{name}={_number(factors[name])}" for name in EFFORT_FACTORS if name in factors
+    )
+
+
+def _number(value: float) -> str:
+    return str(int(value)) if value == int(value) else repr(value)
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +79,7 @@ class Phrase:
     Attributes:
         first: First count.
         last: Last count.
-        effort: The quality: "sad", or "time=-3.5,weight=0.41,space=1" (Neagle 2005 §5.4); None for
+        effort: The quality: one of :data:`EFFORTS`, or what :func:`effort_text` gives; None for
             that of the whole dance.
         tempo_end: The factor of the tempo reached at the end: below 1 slowing, above 1 quickening;
             None for an even tempo. After the phrase the tempo is the score's again.

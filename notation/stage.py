@@ -8,12 +8,28 @@ stage left, so a place is ``(x, y) = (-up, left)`` and a direction is a yaw.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import cos, radians, sin
 
 from enpointe.notation.signs import Location, Side
 
-__all__ = ["Facing", "StagePlace", "Travel", "Turn"]
+__all__ = ["DIRECTION_WORDS", "Facing", "StagePlace", "Travel", "Turn"]
+
+DIRECTION_WORDS: Mapping[float, tuple[str, ...]] = {
+    0.0: ("audience", "wall 5", "en face", "downstage", "point 1"),
+    -45.0: ("corner 1", "point 2"),
+    -90.0: ("stage right", "wall 8", "point 3"),
+    -135.0: ("corner 4", "point 4"),
+    180.0: ("upstage", "wall 7", "point 5"),
+    135.0: ("corner 3", "point 6"),
+    90.0: ("stage left", "wall 6", "point 7"),
+    45.0: ("corner 2", "point 8"),
+}
+"""Words for the eight directions; the first is the one that scores are written with.
+
+Corners and walls are Cecchetti's, from the dancer's right front on counter-clockwise, the audience
+wall 5; points are the French and Russian schools', clockwise from the audience."""
 
 
 @dataclass(frozen=True, slots=True)

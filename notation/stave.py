@@ -30,7 +30,7 @@ from enpointe.notation.stave_ink import (
     union,
     words,
 )
-from enpointe.notation.stave_layout import break_lines
+from enpointe.notation.stave_layout import LEAST_STAVE, break_lines
 from enpointe.notation.stave_line import FrameDrawing, LineDrawing, draw_line
 from enpointe.notation.writer import format_beat, frame_lines
 
@@ -63,11 +63,11 @@ class Page:
     space: float = 2.4
 
     def __post_init__(self) -> None:
-        if self.measure < 30.0 or (self.height - 2 * self.margin) / self.space < 40.0:
+        if self.measure < LEAST_STAVE or (self.height - 2 * self.margin) / self.space < 40.0:
             raise ValueError(
                 f"a page of {self.width:g} mm by {self.height:g} mm with margins of "
                 f"{self.margin:g} mm has no room for a stave whose lines are {self.space:g} mm "
-                "apart; it needs 30 times that in width and 40 times in height"
+                f"apart; it needs {LEAST_STAVE:g} times that in width and 40 times in height"
             )
 
     @property
@@ -95,7 +95,7 @@ def stave_svg(score: Score, page: Page = A4) -> str:
     lines = _lines(score, page)
     edge = _EDGE
     right = max(line.box.right for line in lines) if lines else 0.0
-    measure = page.measure if len(lines) > 1 else min(page.measure, max(right, 30.0))
+    measure = page.measure if len(lines) > 1 else min(page.measure, max(right, LEAST_STAVE))
     y = 0.0
     header = list(_header(score, measure, y))
     y = union(mark.box for mark in header).bottom
@@ -120,26 +120,23 @@ def stave_pages(score: Score, page: Page = A4) -> tuple[str, ...]:
         those of the whole score.
     """
     edge, height = page.margin / page.space, page.height / page.space
-    sheets: list[tuple[list[Mark], list[LineDrawing]]] = []
-    room = 0.0
+    sheets: list[tuple[list[Mark], list[LineDrawing]]] = [
+        (list(_header(score, page.measure, edge)), [])
+    ]
+    foot = height - edge - _FOOT
+    room = foot - union(mark.box for mark in sheets[0][0]).bottom
     for line in _lines(score, page):
         tall = line.box.bottom - line.box.top + _GAP
-        if not sheets or tall > room:
-            header = list(
-                _running_header(score, page.measure, edge)
-                if sheets
-                else _header(score, page.measure, edge)
-            )
-            top = union(mark.box for mark in header).bottom
-            room = height - edge - _FOOT - top
-            sheets.append((header, []))
+        if tall > room and sheets[-1][1]:
+            sheets.append((list(_running_header(score, page.measure, edge)), []))
+            room = foot - union(mark.box for mark in sheets[-1][0]).bottom
         sheets[-1][1].append(line)
         room -= tall
     return tuple(
         _document(
             score,
             [*header, *_footer(number, len(sheets), page.measure, height - edge)],
-            _down(lines, union(mark.box for mark in header).bottom, height - edge - _FOOT, full),
+            _down(lines, union(mark.box for mark in header).bottom, foot, full),
             (page.width / page.space, height),
             edge,
             (f"{page.width:g}mm", f"{page.height:g}mm"),

@@ -8,18 +8,18 @@ writes is drawn; a named position is drawn by the signs that it stands for.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from enpointe.notation.frame import Frame, ResolvedFrame, ResolvedLeg
 from enpointe.notation.glyphs import FEET_APART, GLYPHS, extremity, joint, orientation
 from enpointe.notation.movement import Limb
 from enpointe.notation.resolving import overlaid
-from enpointe.notation.signs import Bend, FloorContact, Side, Sign, Support
+from enpointe.notation.signs import Bend, Depth, FloorContact, Side, Sign, Support
 from enpointe.notation.stave_ink import Box, Mark, Point, glyph, line, pieces, union
 from enpointe.notation.stave_paths import movement_line
 from enpointe.notation.vocabulary import feet_signs, pose_frame
 
-__all__ = ["FLOOR", "REACH", "frame_marks", "spot"]
+__all__ = ["FLOOR", "REACH", "frame_marks", "spot", "written"]
 
 REACH = 2.0
 """Stave spaces of a limb stretched to the side, width 1 (the frame is about as wide as high)."""
@@ -33,7 +33,7 @@ _GAP = 0.06
 _CLEAR = 0.14
 _WIDEST = 0.4
 _SETTLED_STEP = 0.09
-_LEADER = 0.6
+_LEADER = 1.0
 _KNEES: Mapping[Bend, tuple[float, float]] = {
     Bend.DEMI_PLIE: (0.55, FLOOR - 0.78),
     Bend.GRAND_PLIE: (0.95, FLOOR - 0.5),
@@ -72,28 +72,38 @@ def spot(limb: Limb, frame: ResolvedFrame) -> Point:
     """Where the sign of a hand or foot stands, or would if it were written."""
     if limb.kind == "hand":
         return _place(frame.arms[limb.side].wrist, limb.side)
-    return _foot_place(frame.legs[limb.side], limb.side)
+    return _foot_place(frame.legs[limb.side], limb.side, _alone(frame, limb.side))
+
+
+def _alone(frame: ResolvedFrame, side: Side) -> bool:
+    return frame.legs[side.other].position is None
 
 
 def _place(sign: Sign, side: Side) -> Point:
     return _outward(side) * sign.width * REACH, FLOOR + 1.0 - sign.height
 
 
-def _foot_place(leg: ResolvedLeg, side: Side) -> Point:
-    sign, x = _foot_sign(leg, side)
+def _foot_place(leg: ResolvedLeg, side: Side, alone: bool) -> Point:
+    sign, x = _foot_sign(leg, side, alone)
     if leg.support is not None:
         return x, FLOOR + _standing(leg.support, extremity(sign.depth))
     clear = FLOOR - 2.0 * _reach("front") - _AIR
     return x, min(FLOOR + 1.0 - sign.height, clear)
 
 
-def _foot_sign(leg: ResolvedLeg, side: Side) -> tuple[Sign, float]:
-    """The sign of a foot and how far it stands from the centre line."""
+def _foot_sign(leg: ResolvedLeg, side: Side, alone: bool) -> tuple[Sign, float]:
+    """The sign of a foot and how far it stands from the centre line.
+
+    A foot that the other has left `alone` in a named position is neither in front nor behind.
+    """
     if leg.foot is not None:
         return leg.foot, _outward(side) * leg.foot.width * REACH
     assert leg.position is not None
     form = f"{leg.position.name} open" if leg.position.open else leg.position.name
-    return feet_signs(leg.position)[side], _outward(side) * FEET_APART[form]
+    sign = feet_signs(leg.position)[side]
+    if alone:
+        sign = replace(sign, depth=Depth.LEVEL)
+    return sign, _outward(side) * FEET_APART[form]
 
 
 def _standing(support: Support, name: str) -> float:
@@ -102,13 +112,18 @@ def _standing(support: Support, name: str) -> float:
     return way * (_reach(name) + LINE / 2)
 
 
+def written(frame: Frame) -> Frame:
+    """What a frame writes, its named pose taken apart into its limbs."""
+    return frame if frame.pose is None else overlaid(pose_frame(frame.pose, frame), frame)
+
+
 def frame_marks(
     frame: Frame, resolved: ResolvedFrame, before: ResolvedFrame | None
 ) -> tuple[Mark, ...]:
     """The signs in the stave that a frame writes.
 
     Args:
-        frame: The frame as written.
+        frame: What it writes, as :func:`written` gives it.
         resolved: The same frame with all filled in.
         before: The frame before, where movement lines start; None for the first.
 
@@ -117,8 +132,6 @@ def frame_marks(
         of the centre line unless they are crossed; those of head, body and pelvis give way to the
         limbs', with a leader to their place if they go far.
     """
-    if frame.pose is not None:
-        frame = overlaid(pose_frame(frame.pose, frame), frame)
     limbs = [*_feet(frame, resolved), *_hands(frame, resolved), *_bends(frame, resolved)]
     paths = [] if before is None else list(_paths(frame, resolved, before))
     on_the_way = [box for mark in paths for box in pieces(mark)]
@@ -149,16 +162,17 @@ def _hands(frame: Frame, resolved: ResolvedFrame) -> list[_Group]:
 
 def _feet(frame: Frame, resolved: ResolvedFrame) -> Iterator[_Group]:
     whole = frame.feet is not None
-    written = [
+    moved = [
         side
         for side in Side
         if whole or side in frame.foot_signs or side in frame.legs or side in frame.support
     ]
     together: list[Mark] = []
-    for side in written:
+    apart: list[_Group] = []
+    for side in moved:
         leg = resolved.legs[side]
-        sign, _ = _foot_sign(leg, side)
-        x, y = _foot_place(leg, side)
+        sign, _ = _foot_sign(leg, side, _alone(resolved, side))
+        x, y = _foot_place(leg, side, _alone(resolved, side))
         marks = [glyph(extremity(sign.depth), x, y)]
         if leg.support is not None and leg.support.floor is FloorContact.TOUCH:
             ring = glyph("floor touching", x, 0.0)
@@ -168,9 +182,10 @@ def _feet(frame: Frame, resolved: ResolvedFrame) -> Iterator[_Group]:
         if leg.position is not None:
             together += marks
         else:
-            yield _Group(tuple(marks), _ways(side, sign.width < 0))
+            apart.append(_Group(tuple(marks), _ways(side, sign.width < 0)))
     if together:
         yield _Group(tuple(together))
+    yield from apart
 
 
 def _bends(frame: Frame, resolved: ResolvedFrame) -> Iterator[_Group]:
@@ -182,19 +197,19 @@ def _bends(frame: Frame, resolved: ResolvedFrame) -> Iterator[_Group]:
             yield _Group((glyph(joint(elbow.depth), x, y),), _ways(side, elbow.width < 0))
     for side in Side:
         leg = resolved.legs[side]
-        written = (
+        moved = (
             frame.feet is not None
             or side in frame.foot_signs
             or side in frame.legs
             or side in frame.support
             or side in frame.knees
         )
-        if written and leg.knee is not None:
+        if moved and leg.knee is not None:
             x, y = _place(leg.knee, side)
             yield _Group((glyph(joint(leg.knee.depth), x, y),), _ways(side, leg.knee.width < 0))
-        elif written and leg.support is not None and leg.support.bend in _KNEES:
+        elif moved and leg.support is not None and leg.support.bend in _KNEES:
             out, y = _KNEES[leg.support.bend]
-            x = _foot_place(leg, side)[0] + _outward(side) * out
+            x = spot(Limb.of(side, "foot"), resolved)[0] + _outward(side) * out
             yield _Group((glyph("bend level", x, y),), _ways(side, False))
 
 
@@ -236,7 +251,7 @@ def _settle(groups: Iterable[_Group], on_the_way: Sequence[Box]) -> list[_Group]
 def _apart(left: _Group, right: _Group) -> tuple[_Group, _Group]:
     """Two signs of either side that would stand on each other, each moved out as far."""
     overlap = left.box.right + _GAP - right.box.left
-    if overlap <= 0 or not left.box.touches(right.box, _GAP) or overlap > 2 * _WIDEST:
+    if overlap <= 0 or not left.box.touches(right.box, _GAP, _GAP) or overlap > 2 * _WIDEST:
         return left, right
     return left.moved(-overlap / 2), right.moved(overlap / 2)
 

@@ -59,13 +59,13 @@ class Box:
     right: float
     bottom: float
 
-    def touches(self, other: Box, gap: float = 0.0) -> bool:
-        """Whether the two overlap or stand less than `gap` apart."""
+    def touches(self, other: Box, aside: float = 0.0, above: float = 0.0) -> bool:
+        """Whether they overlap, or stand less than that much aside and above each other."""
         return (
-            self.left < other.right + gap
-            and other.left < self.right + gap
-            and self.top < other.bottom + gap
-            and other.top < self.bottom + gap
+            self.left < other.right + aside
+            and other.left < self.right + aside
+            and self.top < other.bottom + above
+            and other.top < self.bottom + above
         )
 
     def moved(self, dx: float, dy: float) -> Box:

@@ -13,7 +13,7 @@ from fractions import Fraction
 from enpointe.notation.frame import Frame
 from enpointe.notation.phrasing import Repeat
 from enpointe.notation.score import Score
-from enpointe.notation.stave_frame import frame_marks
+from enpointe.notation.stave_frame import frame_marks, written
 from enpointe.notation.stave_ink import Mark, union
 from enpointe.notation.stave_margins import count_marks, stage_marks
 
@@ -37,6 +37,9 @@ HELD_BARS = 4.6
 
 REPEAT = 1.1
 """Width of a repeat sign with the room about it."""
+
+LEAST_STAVE = 30.0
+"""Length of a stave that stands alone, at least: room for a title."""
 
 _PAD = 0.42
 _LEAST_HALF = 0.95
@@ -166,9 +169,10 @@ def slots(score: Score) -> tuple[list[Slot], Barrier]:
 def _cells(score: Score) -> Iterator[Cell]:
     before = None
     for index, (frame, resolved) in enumerate(zip(score.frames, score.resolved(), strict=True)):
-        signs = frame_marks(frame, resolved, before)
+        writes = written(frame)
+        signs = frame_marks(writes, resolved, before)
         count = count_marks(score, frame.beat, COUNT_LINE)
-        stage = stage_marks(frame)
+        stage = stage_marks(writes)
         box = union(mark.box for mark in (*signs, *count, *stage))
         left, right = max(-box.left, _LEAST_HALF), max(box.right, _LEAST_HALF)
         yield Cell(index, frame, signs, count, stage, left, right)
@@ -258,22 +262,25 @@ def _cost(natural: float, least: float, room: float, last: bool) -> float:
 def _line(
     found: Sequence[Slot], width: float, first: bool, last: bool, only: bool, after: Barrier
 ) -> Line:
-    opening = _opening(first, found[0])
-    inner = sum(slot.before.width for slot in found[1:])
-    room = width - opening - inner - _closing(after, last)
+    opening, closing = _opening(first, found[0]), _closing(after, last)
+    fixed = opening + sum(slot.before.width for slot in found[1:]) + closing
     natural = sum(slot.natural for slot in found)
     least = sum(slot.least for slot in found)
+    room = width - fixed
+    # Spread to the full width unless it is a last stave that is short.
+    full = not last or (not only and natural > _FULL * room)
+    wanted = room if full else max(natural, min(room, LEAST_STAVE - fixed) if only else 0.0)
     widths = [slot.natural for slot in found]
     if natural > room:
         squeeze = min((natural - room) / (natural - least), 1.0) if natural > least else 0.0
         widths = [slot.natural - squeeze * (slot.natural - slot.least) for slot in found]
-    elif not last or (not only and natural > _FULL * room):
+    elif wanted > natural:
         spread = [slot.natural if slot.cell else 0.0 for slot in found]
-        share = (room - natural) / (sum(spread) or 1.0)
+        share = (wanted - natural) / (sum(spread) or 1.0)
         widths = [slot.natural + share * part for slot, part in zip(found, spread, strict=True)]
     placed, x = [], opening
     for i, (slot, wide) in enumerate(zip(found, widths, strict=True)):
         x += slot.before.width if i else 0.0
         placed.append((slot, x, wide))
         x += wide
-    return Line(tuple(placed), x + _closing(after, last), first, last, after)
+    return Line(tuple(placed), x + closing, first, last, after)

@@ -170,7 +170,9 @@ def _held(slot: Slot, left: float, width: float) -> Iterator[Mark]:
     start = left + (width - HELD_BARS) / 2 + 0.4
     yield between("held bars", (start, 2.0), (start + HELD_BARS - 0.8, 2.0))
     x = left + width / 2
-    yield words(str(slot.held), x, -0.5, 1.1, anchor="middle", style=BOLD, name="bars-held")
+    yield words(
+        str(slot.held), x, -0.5, 1.1, anchor="middle", style=BOLD, fit=width - 0.4, name="bars-held"
+    )
 
 
 def _add_stage_row(placed: Placed, below: float) -> None:

@@ -1,9 +1,9 @@
 """Named positions of the arms, each a macro over the signs of the wrists.
 
 The numbers of an arm stand once, in :data:`ARM_PLACES`; a position of the arms says which place
-each arm takes. They were reckoned for a dancer of 1.68 m (knee .465, waist 1.00, shoulder 1.36,
-crown 1.68, stretched wrist overhead 1.875; shoulder .155 from the centre line; wrist .50 from the
-shoulder when the arm is rounded and .515 when it is straight, hence a full reach of .67; all in
+each arm takes. They were tuned on a dancer of 1.68 m (knee .493, waist 1.026, shoulder 1.331, crown
+1.68, stretched wrist overhead 1.853; shoulder .155 from the centre line; wrist .508 from the
+shoulder when the arm is rounded and .522 when it is straight, hence a full reach of .678; all in
 metres) so that every place is within reach, in front where it says front. No source prints them as
 numbers: what they say in words stands with each place, the figures are ours.
 
@@ -21,7 +21,7 @@ from dataclasses import dataclass
 
 from enpointe.notation.signs import BodyPlace, Depth, Sign
 
-__all__ = ["ARMS", "ARM_PLACES", "CONTACT_PLACES", "ArmPlace", "ArmsEntry", "ContactPlace"]
+__all__ = ["ARMS", "ARM_PLACES", "BODY_PLACES", "CONTACT_PLACES", "ArmPlace", "ArmsEntry", "ContactPlace"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -250,3 +250,13 @@ CONTACT_PLACES: Mapping[BodyPlace, ContactPlace] = {
 """Ours, by trigonometry on a dancer of 1.68 m whose upper arm is .266 m and forearm .256 m: in the
 plane of the body the elbow stands where both lengths meet. The sources say only that contact of
 hand and body is written (Neagle 2005 fig. 4.2)."""
+
+BODY_PLACES: Mapping[BodyPlace, tuple[str, ...]] = {
+    BodyPlace.HIP: ("hip", "hips"),
+    BodyPlace.WAIST: ("waist",),
+    BodyPlace.SHOULDER: ("shoulder",),
+    BodyPlace.THIGH: ("thigh",),
+    BodyPlace.HEAD: ("head",),
+    BodyPlace.OTHER_HAND: ("other hand",),
+}
+"""Words for the places that a hand lies on; the first is the one that scores are written with."""

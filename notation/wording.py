@@ -5,41 +5,76 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable, Sequence
 
-__all__ = ["describe_end", "either", "phrase", "suggest"]
+__all__ = ["describe_end", "either", "phrase", "quoted", "suggest"]
 
 _PHRASES = {
-    "FIELD": "a header line (title, method, metre, tempo)",
+    "FIELD": "a header line (title, method, metre, tempo, pickup, repeat, phrase)",
     "TEXT": "some words (in quotes if they hold a #)",
+    "QUOTED": "a name in quotes",
     "WHEN": "a count such as 0, 1 or 2+1/2",
-    "WORD": "the name of a position",
+    "MOMENT": "a count such as 2 or 1+1/2",
+    "WORD": "a name",
     "NUMBER": "a number",
+    "_METRES": "'m'",
     "_COLON": "':'",
+    "_EQUALS": "'='",
     "_COMMA": "','",
     "_NL": "the end of the line",
     "$END": "the end of the score",
 }
 
 _KEYWORDS = {
-    "FIELD": ("title", "method", "metre", "tempo"),
+    "FIELD": ("title", "method", "metre", "tempo", "pickup"),
+    "REPEAT": ("repeat",),
+    "PHRASE": ("phrase",),
+    "ONCE_OR_TWICE": ("once", "twice"),
+    "_TIMES": ("times",),
+    "_MORE": ("more",),
+    "OTHER_SIDE": ("other side",),
+    "FIRST_OR_SECOND": ("first", "second"),
+    "_ENDING": ("ending",),
+    "FACTOR": ("time", "weight", "space"),
+    "SLOWING_OR_QUICKENING": ("slowing", "quickening"),
+    "_TO": ("to",),
+    "BAR": ("bar",),
     "BEAT": ("beat",),
+    "DEFINE": ("define",),
+    "KIND": ("arms", "leg", "pose"),
     "FEET": ("feet",),
     "ARMS": ("arms",),
+    "POSE": ("pose",),
     "SIDE": ("left", "right"),
     "LIMB": ("hand", "elbow", "foot", "knee"),
+    "LEG": ("leg",),
     "PART": ("head", "body", "pelvis"),
+    "FACE": ("face",),
+    "PLACE": ("place",),
+    "TRAVEL": ("travel",),
+    "TURN": ("turn",),
+    "JUMP": ("jump",),
     "_FRONT": ("front",),
     "_LEADS": ("leads",),
     "_WIDE": ("wide",),
     "_HIGH": ("high",),
     "DEPTH": ("front", "level", "behind"),
     "STRAIGHT": ("straight",),
+    "_ON": ("on",),
+    "_BY": ("by",),
     "ERECT": ("erect",),
     "TURN_OR_TILT": ("turn", "tilt"),
     "_BEND": ("bend",),
     "FORWARD_OR_BACK": ("forward", "back"),
+    "CENTRE": ("centre",),
+    "UP_OR_DOWN": ("up", "down"),
+    "_TOWARDS": ("towards",),
+    "_CURVING": ("curving",),
+    "_OFF": ("off",),
 }
 
-_A_LINE_OF_A_FRAME = {"FEET", "ARMS", "SIDE", "PART"}
+_A_LINE_OF_A_FRAME = frozenset(
+    ("FEET", "ARMS", "POSE", "SIDE", "PART", "FACE", "PLACE", "TRAVEL", "TURN", "JUMP")
+)
+_IN_THE_HEADER = frozenset(("FIELD", "REPEAT", "PHRASE"))
 
 
 def phrase(terminals: Iterable[str]) -> list[str]:
@@ -49,8 +84,12 @@ def phrase(terminals: Iterable[str]) -> list[str]:
     if expected >= _A_LINE_OF_A_FRAME:
         expected -= _A_LINE_OF_A_FRAME
         words.append(
-            "a line for feet, arms, head, body, pelvis, left or right hand (elbow, foot, knee)"
+            "a line for feet, arms, head, body, pelvis, left or right hand (elbow, foot, knee, "
+            "leg), pose, face, place, travel, turn, jump"
         )
+    if expected >= _IN_THE_HEADER:
+        expected -= _IN_THE_HEADER
+        words.append(_PHRASES["FIELD"])
     for name in (*_KEYWORDS, *_PHRASES):
         if name not in expected:
             continue
@@ -67,6 +106,11 @@ def either(choices: Sequence[str]) -> str:
     if len(choices) < 2:
         return "".join(choices) or "nothing more"
     return f"{', '.join(choices[:-1])} or {choices[-1]}"
+
+
+def quoted(choices: Sequence[str]) -> str:
+    """ "'a', 'b' or 'c'"."""
+    return either([f"'{each}'" for each in choices])
 
 
 def suggest(word: str, terminals: Iterable[str]) -> str | None:

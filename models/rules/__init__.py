@@ -20,6 +20,8 @@ from enpointe.models.rules.base import Symbols as Symbols
 from enpointe.models.rules.feet import (
     BallOnItsMark,
     FeetTurnedOutAlike,
+    FootAboveTheFloor,
+    FootPointsOnItsWay,
     FootRaised,
     FootTurnout,
     OnTheTip,
@@ -27,8 +29,10 @@ from enpointe.models.rules.feet import (
     ToesFlat,
     TurnoutAtTheHip,
 )
+from enpointe.models.rules.hip import REAL_ROTATION_DEG, HipExtension, HipRotation
 from enpointe.models.rules.legs import (
     FootOnItsSign,
+    FootOnItsWay,
     KneeBend,
     KneeOnItsSign,
     KneeOverToe,
@@ -37,7 +41,6 @@ from enpointe.models.rules.legs import (
     ToeAtTheLeg,
     ToeOnTheFloor,
 )
-from enpointe.models.rules.range_of_motion import HipExtension
 from enpointe.models.rules.stance import (
     BodyAsWritten,
     HeadAsWritten,
@@ -57,7 +60,9 @@ def rules_for(target: PoseTarget) -> tuple[Rule, ...]:
         rules += _arm_rules(target.arms[side].shape, side)
         rules += _leg_rules(target.legs[side], side)
         if target.real:
-            rules.append(HipExtension(side))
+            rules += [HipRotation(side, REAL_ROTATION_DEG), HipExtension(side)]
+        else:
+            rules.append(HipRotation(side))
     if target.com is not None:
         rules.append(ComInFlight())
     else:
@@ -99,6 +104,14 @@ def _leg_rules(leg: LegTarget, side: Side) -> list[Rule]:
         return [*rules, KneeOverToe(side)] if leg.knee_bend > 0 else rules
     if isinstance(leg, OnPointe):
         return [OnTheTip(side), FootTurnout(side), KneeBend(side), TurnoutAtTheHip(side)]
+    if isinstance(leg, InAir) and leg.passing:
+        return [
+            FootOnItsWay(side),
+            KneeOnItsSign(side),
+            FootPointsOnItsWay(side),
+            FootAboveTheFloor(side),
+            LegTurnedOut(side),
+        ]
     rules = [PointedFoot(side), LegTurnedOut(side)]
     if isinstance(leg, ToeOnFloor):
         return [ToeOnTheFloor(side), *rules]

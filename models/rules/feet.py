@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from enpointe.models.foot_positions import Footprint
 from enpointe.models.kinematics import SymbolicBody
-from enpointe.models.leg_target import InAir, OnPointe, Standing
+from enpointe.models.leg_target import OnPointe, Standing
 from enpointe.models.rules.base import Kind, Rule, SidedRule, Symbols
 from enpointe.models.target import PoseTarget
 from enpointe.notation import Side
@@ -19,6 +19,8 @@ from enpointe.notation import Side
 __all__ = [
     "BallOnItsMark",
     "FeetTurnedOutAlike",
+    "FootAboveTheFloor",
+    "FootPointsOnItsWay",
     "FootRaised",
     "FootTurnout",
     "OnTheTip",
@@ -154,18 +156,42 @@ class PointedFoot(SidedRule):
     source: ClassVar[str] = "Neagle 2005 §4.5.2; Russell et al. 2010 (77-83 deg of plantar flexion)"
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
-        share = symbols(f"{self.side}_pointed")
         stretch = {"ankle_point": POINTED_DEG, "ankle_turn": 0, "ankle_roll": 0, "toe_raise": -15}
         return ca.vertcat(
-            *(body.joint(f"{self.side}_{j}") - share * radians(v) for j, v in stretch.items())
+            *(body.joint(f"{self.side}_{j}") - radians(v) for j, v in stretch.items())
         )
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
-        leg = target.legs[Side(self.side)]
-        return {f"{self.side}_pointed": np.array(leg.pointed if isinstance(leg, InAir) else 1.0)}
+        return {}
 
 
 POINTED_DEG = 75.0
+
+
+class FootPointsOnItsWay(PointedFoot):
+    """The same, as far as the floor under a passing foot allows."""
+
+    name: ClassVar[str] = "foot points on its way"
+    bound: ClassVar[float] = 90.0
+    kind: ClassVar[Kind] = Kind.PREFER
+    weight: ClassVar[float] = 0.3
+
+
+class FootAboveTheFloor(SidedRule):
+    """No part of a passing foot goes through the floor: heel, ball and toe tip at z >= 0."""
+
+    name: ClassVar[str] = "foot above the floor"
+    unit: ClassVar[str] = "mm"
+    bound: ClassVar[float] = 0.0
+    kind: ClassVar[Kind] = Kind.AT_LEAST
+    source: ClassVar[str] = "Neagle 2005 §4.5.3 e (toes below the floor)"
+
+    def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
+        points = ("heel", "ball", "toe_tip")
+        return ca.vertcat(*(body.site(f"{self.side}_{p}")[2] for p in points))
+
+    def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
+        return {}
 
 
 class TurnoutAtTheHip(SidedRule):

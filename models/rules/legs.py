@@ -12,11 +12,13 @@ from numpy.typing import NDArray
 from enpointe.models.kinematics import SymbolicBody
 from enpointe.models.leg_target import InAir, OnPointe, Standing, ToeOnFloor, ToeOnLeg
 from enpointe.models.rules.base import Kind, SidedRule, Symbols
+from enpointe.models.rules.hip import thigh_twist
 from enpointe.models.target import PoseTarget
 from enpointe.notation import Side
 
 __all__ = [
     "FootOnItsSign",
+    "FootOnItsWay",
     "KneeBend",
     "KneeOnItsSign",
     "KneeOverToe",
@@ -99,6 +101,16 @@ class FootOnItsSign(SidedRule):
         leg = target.legs[Side(self.side)]
         assert isinstance(leg, InAir)
         return {f"{self.side}_ankle": leg.ankle, "girdle": target.upright.ravel(order="F")}
+
+
+class FootOnItsWay(FootOnItsSign):
+    """The ankle of a passing leg keeps to its way, as well as the floor lets it."""
+
+    name: ClassVar[str] = "foot on its way"
+    bound: ClassVar[float] = 120.0
+    kind: ClassVar[Kind] = Kind.PREFER
+    weight: ClassVar[float] = 200.0
+    source: ClassVar[str] = "Neagle 2005 §5.2.1 (shortest path)"
 
 
 class KneeOnItsSign(SidedRule):
@@ -197,27 +209,9 @@ class LegTurnedOut(SidedRule):
     source: ClassVar[str] = "Neagle 2005 §4.4.6 (turnout about the thigh)"
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
-        pelvis = body.frame("pelvis").rotation
-        thigh = pelvis.T @ body.frame(f"{self.side}_thigh").rotation
-        outward = 1.0 if self.side == "left" else -1.0
-        front, left = _swung_axes(-thigh[:, 2])
-        twist = ca.atan2(ca.dot(thigh[:, 0], left), ca.dot(thigh[:, 0], front))
-        return outward * twist - symbols(f"{self.side}_turnout")
+        return thigh_twist(body, self.side) - symbols(f"{self.side}_turnout")
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
         leg = target.legs[Side(self.side)]
         assert isinstance(leg, InAir | ToeOnFloor | ToeOnLeg)
         return {f"{self.side}_turnout": np.array(leg.turnout)}
-
-
-def _swung_axes(direction: ca.SX) -> tuple[ca.SX, ca.SX]:
-    """Where front and left of a hanging thigh go by the shortest swing to `direction` (3, 1)."""
-    x, y, z = direction[0], direction[1], direction[2]
-    axis = ca.vertcat(y, -x, 0)
-    share = 1 / (1 - z + 1e-6)
-
-    def swing(v: ca.SX) -> ca.SX:
-        across = ca.cross(axis, v)
-        return v + across + share * ca.cross(axis, across)
-
-    return swing(ca.SX([1, 0, 0])), swing(ca.SX([0, 1, 0]))

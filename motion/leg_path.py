@@ -1,0 +1,146 @@
+"""The way of a leg from one key pose to the next: standing, leaving the floor, swinging, arriving.
+
+A leg that stands before and after on the same place stays, and rises or bends by degrees. One that
+leaves first gives up its weight, then swings: thigh and shank each take the shortest arc, so that a
+straight leg stays straight and a developpe unfolds. One that arrives swings first and takes weight
+then. The ballet rules hold the rest: foot above the floor, pointed as soon as it can, turned out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import acos, radians, sin
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from enpointe.models.foot_positions import Footprint
+from enpointe.models.keypose import KeyPose
+from enpointe.models.leg_target import DEMI_POINTE_DEG, InAir, LegTarget, OnPointe, Standing
+from enpointe.notation import Side
+
+__all__ = ["WEIGHT_SHIFT", "LegPath"]
+
+Vector = NDArray[np.float64]
+WEIGHT_SHIFT = 0.3
+"""Share of a passage in which weight moves before a foot leaves, or after it arrives."""
+
+
+@dataclass(frozen=True)
+class LegPath:
+    """One leg's way between two key poses.
+
+    Attributes:
+        model: The dancer.
+        side: Whose leg.
+        start: The key pose before.
+        end: The next.
+    """
+
+    model: mujoco.MjModel
+    side: Side
+    start: KeyPose
+    end: KeyPose
+
+    @property
+    def before(self) -> LegTarget:
+        return self.start.target.legs[self.side]
+
+    @property
+    def after(self) -> LegTarget:
+        return self.end.target.legs[self.side]
+
+    @property
+    def stays(self) -> bool:
+        """Whether the foot bears weight all the way: on one place, or sliding to another."""
+        return _print(self.before) is not None and _print(self.after) is not None
+
+    @property
+    def leaves(self) -> bool:
+        return _print(self.before) is not None and not self.stays
+
+    @property
+    def arrives(self) -> bool:
+        return _print(self.after) is not None and not self.stays
+
+    def swing(self, share: float) -> float:
+        """How far the swing is at `share` of the passage: 0 still standing, 1 arrived."""
+        low = WEIGHT_SHIFT if self.leaves else 0.0
+        high = 1.0 - WEIGHT_SHIFT if self.arrives else 1.0
+        return float(np.clip((share - low) / (high - low), 0.0, 1.0))
+
+    def at(self, share: float) -> LegTarget:
+        """What the leg is asked at `share` of the passage."""
+        if self.stays:
+            return self._standing(share)
+        swing = self.swing(share)
+        if swing <= 0.0 and self.leaves:
+            return self.before
+        if swing >= 1.0 and self.arrives:
+            return self.after
+        return self._swinging(swing)
+
+    def _standing(self, share: float) -> LegTarget:
+        footprint = _print(self.before)
+        turned = _print(self.after)
+        assert footprint is not None and turned is not None
+        direction = (1 - share) * footprint.direction + share * turned.direction
+        ball = self.start.target.figure.ball_forward
+        pivot = (1 - share) * footprint.point(ball) + share * turned.point(ball)
+        foot = Footprint(pivot, direction)
+        place = Footprint(foot.point(-ball), direction)
+        if isinstance(self.before, OnPointe) and isinstance(self.after, OnPointe):
+            bend = (1 - share) * self.before.knee_bend + share * self.after.knee_bend
+            return OnPointe(place, bend)
+        rise = (1 - share) * _rise(self.before) + share * _rise(self.after)
+        bend = (1 - share) * _bend(self.before) + share * _bend(self.after)
+        return Standing(place, rise, bend)
+
+    def _swinging(self, swing: float) -> InAir:
+        thigh0, shank0 = _directions(self.model, self.start, self.side)
+        thigh1, shank1 = _directions(self.model, self.end, self.side)
+        figure = self.start.target.figure
+        hip = figure.hips[self.side]
+        knee = hip + figure.thigh * _arc(thigh0, thigh1, swing)
+        ankle = knee + figure.shank * _arc(shank0, shank1, swing)
+        turnout = getattr(self.after, "turnout", getattr(self.before, "turnout", radians(60.0)))
+        return InAir(ankle, knee, turnout, passing=True)
+
+
+def _print(leg: LegTarget) -> Footprint | None:
+    return leg.footprint if isinstance(leg, Standing | OnPointe) else None
+
+
+def _rise(leg: LegTarget) -> float:
+    if isinstance(leg, Standing):
+        return leg.rise
+    return radians(DEMI_POINTE_DEG + 18.0)
+
+
+def _bend(leg: LegTarget) -> float:
+    assert isinstance(leg, Standing | OnPointe)
+    return leg.knee_bend
+
+
+def _directions(
+    model: mujoco.MjModel, pose: KeyPose, side: Side
+) -> tuple[Vector, Vector]:
+    """Unit directions of thigh and shank of a solved pose, in the pelvis' frame as written."""
+    data = mujoco.MjData(model)
+    data.qpos[:] = pose.qpos
+    mujoco.mj_kinematics(model, data)
+    upright = pose.target.upright
+    hip, knee, ankle = (data.site(f"{side}_{s}").xpos for s in ("hip", "knee", "ankle"))
+    thigh, shank = upright.T @ (knee - hip), upright.T @ (ankle - knee)
+    return thigh / np.linalg.norm(thigh), shank / np.linalg.norm(shank)
+
+
+def _arc(first: Vector, last: Vector, share: float) -> Vector:
+    angle = acos(float(np.clip(first @ last, -1.0, 1.0)))
+    if angle < 1e-6:
+        return last
+    return np.asarray(
+        (sin((1 - share) * angle) * first + sin(share * angle) * last) / sin(angle)
+    )
+
