@@ -140,6 +140,10 @@ def _arm_at(
     else:
         elbow = (1 - k) * path.start.elbow + k * path.end.elbow
     arm = ArmTarget(path.shape, path.start.shoulder, wrist, elbow, **blend)
+    if path.shape is ArmShape.ROUNDED:
+        # An arm drawn in curves more at the elbow; a hand that curved on as well would cross over.
+        at_rest = (1 - k) * path.start.elbow_bend + k * path.end.elbow_bend
+        arm = replace(arm, wrist_bend=arm.wrist_bend - max(arm.elbow_bend - at_rest, 0.0))
     if not inflect or path.waits or path.shape is ArmShape.STRAIGHT:
         return arm
     bend, cross = inflected(arm, path.side, path.heading(k), k, effort.weight)

@@ -27,6 +27,9 @@ __all__ = ["TEMPO_RANGE", "ArmSigns", "Frame", "ResolvedFrame", "Score"]
 TEMPO_RANGE = (1.0, 250.0)
 """Slowest and fastest pulse, in beats a minute (the range of Neagle's own system, 2005)."""
 
+LONGEST = 3600.0
+"""Longest dance, s: an hour, longer than any act; a misprinted beat is far more likely."""
+
 _START = Location(1, 1)
 
 
@@ -156,8 +159,22 @@ class Score:
         return float(beat) * 60.0 / pulse
 
     def duration(self, tempo: float | None = None) -> float:
-        """The time of the last frame, in seconds from the start; see :meth:`seconds`."""
-        return self.seconds(self.frames[-1].beat if self.frames else 0, tempo)
+        """The time of the last frame, in seconds from the start; see :meth:`seconds`.
+
+        Raises:
+            ScoreError: It is longer than :data:`LONGEST`, or the tempo can't be danced.
+        """
+        length = self.seconds(self.frames[-1].beat if self.frames else 0, tempo)
+        if length > LONGEST:
+            at = self.frames[-1].at
+            raise ScoreError(
+                f"this dance would last {length:.0f} s, more than {LONGEST:.0f}; "
+                "look at the last beats or the tempo",
+                at.line,
+                at.column,
+                self.source,
+            )
+        return length
 
     def resolved(self) -> tuple[ResolvedFrame, ...]:
         """Fills in what each frame leaves unwritten.

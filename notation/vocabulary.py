@@ -1,11 +1,10 @@
 """The named positions of ballet, each a macro over the signs of the stave.
 
-The numbers of an arm stand once, in :data:`ARM_PLACES`; a position of the arms says which place
-each arm takes. They were reckoned for a dancer of 1.68 m (knee .465, waist 1.00, shoulder 1.36,
-crown 1.68, stretched wrist overhead 1.875; shoulder .155 from the centre line; wrist .50 from the
-shoulder when the arm is rounded and .515 when it is straight, hence a full reach of .67; all in
-metres) so that every place is within reach, in front where it says front. No source prints them as
-numbers: what they say in words stands with each place, the figures are ours.
+The numbers of an arm stand once, in :data:`ARM_PLACES`; a position of the arms says which place each
+arm takes. They were chosen by eye on a dancer of 1.68 m, whose lines are at 0.49, 1.03, 1.33, 1.68 and
+1.85 m and whose full reach is 0.68 m, so that every place is within reach, in front where it says
+front. No source prints them as numbers: what the sources say in words is quoted with each place, the
+figures are ours.
 
 Sources, by their short names: Neagle 2005 (the thesis); ABT (American Ballet Theatre's dictionary,
 after Grant); Grant (Technical Manual and Dictionary of Classical Ballet).
@@ -102,20 +101,20 @@ ARM_PLACES: Mapping[str, ArmPlace] = {
         Sign(0.28, 2.64, Depth.FRONT), "at the side, fingertips near the thigh", _THESIS
     ),
     "bas": ArmPlace(
-        Sign(0.17, 2.68, Depth.FRONT), "low, rounded, just off the front of the thighs", _THESIS
+        Sign(0.185, 2.68, Depth.FRONT), "low, rounded, just off the front of the thighs", _THESIS
     ),
     "avant": ArmPlace(
-        Sign(0.20, 3.50, Depth.FRONT),
+        Sign(0.21, 3.50, Depth.FRONT),
         "in front, at the base of the breastbone",
         "ABT, port de bras (gateway); webref, Positions des bras (height)",
     ),
     "haut": ArmPlace(
-        Sign(0.18, 5.70, Depth.FRONT),
+        Sign(0.20, 5.75, Depth.FRONT),
         "overhead, some 20 cm in front of the crown",
         f"{_THESIS}; balletterms.net (15 to 25 cm)",
     ),
     "seconde": ArmPlace(
-        Sign(0.94, 3.72, Depth.FRONT),
+        Sign(0.955, 3.72, Depth.FRONT),
         "to the side, sloping down, never behind the shoulder",
         _THESIS,
     ),
