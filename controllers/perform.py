@@ -41,7 +41,7 @@ def perform(
     start = perf_counter()
     state = body.read()
     controller.reset(state)
-    steps = round(motion.duration / body.period)
+    steps = round(motion.duration / body.period) + 1
     for k in range(steps):
         command = controller.command(k * body.period, state)
         body.write(command)

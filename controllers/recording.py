@@ -72,7 +72,8 @@ class Recording:
             MotionError: It ended before there were two samples.
         """
         if len(self.time) < 2:
-            raise MotionError(f"the performance ended at once: {self.fault or 'nothing was danced'}")
+            why = self.fault or "nothing was danced"
+            raise MotionError(f"the performance ended at once: {why}")
         acceleration = np.gradient(self.qvel, self.time, axis=0)
         return Motion(
             self.model,
@@ -109,17 +110,33 @@ class Recording:
         missing = [n for n in (*_SAMPLED, "fault", "wall_time") if n not in data]
         if missing:
             raise FormatError(f"{', '.join(missing)} is missing; the file is damaged", path)
+        channels = {
+            name.removeprefix(_CHANNEL): array
+            for name, array in data.items()
+            if name.startswith(_CHANNEL)
+        }
+        samples = len(data["time"]) if data["time"].ndim else 0
+        widths = {"qpos": model.nq, "qvel": model.nv, "time": None}
+        for name in _SAMPLED:
+            width = widths.get(name, model.nu)
+            shape = (samples,) if width is None else (samples, width)
+            if data[name].shape != shape:
+                raise FormatError(f"{name} must have shape {shape}, not {data[name].shape}", path)
+        for name, array in channels.items():
+            if array.shape[:1] != (samples,):
+                raise FormatError(f"channel {name} must have {samples} samples", path)
+        try:
+            sampled = {n: data[n].astype(bool if n == "valid" else float) for n in _SAMPLED}
+            wall_time = float(data["wall_time"])
+        except (ValueError, TypeError) as error:
+            raise FormatError(f"values that are no numbers ({error})", path) from None
         return cls(
             model=model,
             reference=reference,
-            channels={
-                name.removeprefix(_CHANNEL): array
-                for name, array in data.items()
-                if name.startswith(_CHANNEL)
-            },
+            channels=channels,
             fault=str(data["fault"]) or None,
-            wall_time=float(data["wall_time"]),
-            **{name: data[name] for name in _SAMPLED},  # type: ignore[arg-type]
+            wall_time=wall_time,
+            **sampled,
         )
 
 

@@ -47,9 +47,10 @@ class SexName(StrEnum):
 
 Score = Annotated[str, typer.Argument(help="A shipped score's name, or a .bmn file.")]
 Effort = Annotated[
-    str,
+    str | None,
     typer.Option(
-        help="natural, happy, sad, angry, afraid; or numbers: time=-3.5,weight=.41,space=1."
+        help="natural, happy, sad, angry or afraid, each with its tempo; or numbers:"
+        " time=-3.5,weight=.41,space=1. Natural at the score's tempo if left out."
     ),
 ]
 Tempo = Annotated[
@@ -71,7 +72,7 @@ Turnout = Annotated[float, typer.Option(help="Turnout of each leg, degrees.")]
 @app.command()
 def perform(
     source: Score,
-    effort: Effort = "natural",
+    effort: Effort = None,
     tempo: Tempo = None,
     controller: Annotated[
         ControllerName, typer.Option(help="pd dances under gravity; kinematic only moves.")
@@ -111,7 +112,7 @@ def perform(
 @app.command()
 def compare(
     source: Score,
-    effort: Effort = "natural",
+    effort: Effort = None,
     tempo: Tempo = None,
     height: Height = 1.68,
     mass: Mass = 54.0,
@@ -224,7 +225,9 @@ def _run(arguments: list[str]) -> int:
 
 
 def _refuse(message: str) -> int:
-    print(f"enpointe: {' '.join(message.split())}", file=sys.stderr)
+    # With no arguments at all the help has been printed and there is nothing to add.
+    if message.strip():
+        print(f"enpointe: {' '.join(message.split())}", file=sys.stderr)
     return BAD_INPUT
 
 

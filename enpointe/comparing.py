@@ -81,7 +81,7 @@ class Comparison:
 def compare(
     source: str | Path | Score,
     *,
-    effort: str = "natural",
+    effort: str | None = None,
     tempo: float | None = None,
     style: Style | None = None,
     dancer: Anthropometry | None = None,
@@ -91,8 +91,9 @@ def compare(
 
     Args:
         source: A shipped score's name, a `.bmn` file, or a score.
-        effort: A preset's name or numbers.
-        tempo: Pulses a minute; the preset's if None.
+        effort: A preset's name, which brings its tempo, or numbers; natural, at the score's own
+            tempo, if None.
+        tempo: Pulses a minute; the preset's or the score's if None.
         style: The method's amounts.
         dancer: Height, mass and sex; a dancer of 1.68 m and 54 kg if None.
         progress: Told how far it is.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -41,6 +42,8 @@ class Performance:
         motion: The reference: what was to be danced.
         recording: What happened; None for a kinematic performance.
         measures: Figures of the recording; None for a kinematic performance.
+        shortfall: Most that the floor could not give of the force and moment that the movement
+            asks of it, N (moments over 1 m); None for a kinematic performance.
     """
 
     choreography: Choreography
@@ -51,6 +54,7 @@ class Performance:
     motion: Motion
     recording: Recording | None
     measures: Measures | None
+    shortfall: float | None = None
 
     @property
     def score(self) -> Score:
@@ -63,8 +67,8 @@ class Performance:
 
     @property
     def completed(self) -> bool:
-        """Whether the dancer got to the end."""
-        return self.recording is None or self.recording.fault is None
+        """Whether the dancer got to the end, and stands there."""
+        return self.measures is None or self.measures.fell_at is None
 
     @property
     def broken(self) -> tuple[tuple[KeyPose, str], ...]:
@@ -119,14 +123,20 @@ class Performance:
         }
         if self.recording is not None and self.measures is not None:
             kept, lateness = danced_tempo(danced, self.motion)
-            figures |= {"tempo_danced": kept, "lateness_max": lateness}
-            figures |= _physical_figures(self.recording, self.measures)
+            figures |= {
+                "tempo_danced": kept if isfinite(kept) else None,
+                "lateness_max": lateness if isfinite(lateness) else None,
+            }
+            figures |= _physical_figures(self.recording, self.measures, self.shortfall)
         return figures
 
 
-def _physical_figures(recording: Recording, measures: Measures) -> dict[str, object]:
+def _physical_figures(
+    recording: Recording, measures: Measures, shortfall: float | None
+) -> dict[str, object]:
     return {
         "fell_at": measures.fell_at,
+        "shortfall_max": shortfall,
         "fault": recording.fault,
         "steps": len(recording.time),
         "root_force_max": measures.root_force_max,
@@ -197,7 +207,7 @@ def prepare(
 def perform(
     source: str | Path | Score,
     *,
-    effort: str = "natural",
+    effort: str | None = None,
     tempo: float | None = None,
     controller: str = "pd",
     interpolation: str = "expressive",
@@ -209,8 +219,9 @@ def perform(
 
     Args:
         source: A shipped score's name, a `.bmn` file, or a score.
-        effort: A preset's name or "time=-3.5,weight=.41,space=1".
-        tempo: Pulses a minute; the preset's if None, and the score's own where that has none.
+        effort: A preset's name, which brings its tempo, or "time=-3.5,weight=.41,space=1";
+            natural, at the score's own tempo, if None.
+        tempo: Pulses a minute; the preset's or the score's if None.
         controller: "pd", or "kinematic" for the movement without physics.
         interpolation: "expressive", "logistic" or "slerp".
         style: The method's amounts.
@@ -265,16 +276,18 @@ def dance(
         interpolation,
         progress=lambda done, total: progress("movement", done, total),
     )
-    recording = measures = None
+    recording = measures = shortfall = None
     if controller == "pd":
         from enpointe.controllers import PD
         from enpointe.controllers import perform as run
         from enpointe.sim.body import SimulatedBody
         from enpointe.sim.measures import measure
 
+        pd = PD(motion)
+        shortfall = float(pd.feedforward.shortfall.max())
         recording = run(
             motion,
-            PD(motion),
+            pd,
             SimulatedBody.at_start_of(motion),
             progress=lambda done, total: progress("dance", done, total),
         )
@@ -288,4 +301,5 @@ def dance(
         motion,
         recording,
         measures,
+        shortfall,
     )

@@ -23,6 +23,8 @@ from enpointe.notation.vocabulary import find_arms, find_feet
 from enpointe.performing import check_reach
 
 if TYPE_CHECKING:
+    import mujoco
+
     from enpointe.models import Anthropometry, KeyPose, Style
 
 __all__ = ["Poses", "pose", "vocabulary_score"]
@@ -35,10 +37,12 @@ class Poses:
     Attributes:
         score: One frame a pose.
         key_poses: In the order of the frames.
+        model: The dancer who takes them.
     """
 
     score: Score
     key_poses: tuple[KeyPose, ...]
+    model: mujoco.MjModel
 
     @property
     def held(self) -> bool:
@@ -98,7 +102,7 @@ def pose(
         pose_target(frame, solver.figure, style, source=score.source, name=name)
         for frame in score.resolved()
     ]
-    return Poses(score, tuple(solver.solve(target) for target in targets))
+    return Poses(score, tuple(solver.solve(target) for target in targets), solver.model)
 
 
 def vocabulary_score(name: str) -> Score | None:

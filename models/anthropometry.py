@@ -116,7 +116,11 @@ class Anthropometry:
             raise ModelError(
                 f"mass {self.mass:g} kg at {self.height:g} m is outside {low:g}..{high:g} kg"
             )
-        object.__setattr__(self, "sex", Sex(self.sex))
+        try:
+            object.__setattr__(self, "sex", Sex(self.sex))
+        except ValueError:
+            known = " or ".join(sex.value for sex in Sex)
+            raise ModelError(f"sex {self.sex!r} is not in de Leva's tables; use {known}") from None
 
     @property
     def scale(self) -> float:

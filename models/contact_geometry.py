@@ -131,8 +131,8 @@ def add_limb_contacts(spec: mujoco.MjSpec, skeleton: Skeleton) -> None:
         capsule.add(f"{side}_thigh", (0, 0, -0.10), (0, 0, -skeleton.thigh + 0.05), 0.040)
         capsule.add(f"{side}_shank", (0, 0, -0.05), (0, 0, -skeleton.shank + 0.03), 0.030)
         sole = -skeleton.ankle_height
-        heel = (-0.5 * skeleton.heel_back, 0, sole + 0.032)
-        ball = (skeleton.ball_forward - 0.02, 0, sole + 0.03)
+        heel = (-0.5 * skeleton.heel_back, 0, sole + 0.032 * size)
+        ball = (skeleton.ball_forward - 0.02 * size, 0, sole + 0.03 * size)
         capsule.add(f"{side}_foot", heel, ball, 0.022)
 
 

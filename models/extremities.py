@@ -20,7 +20,7 @@ __all__ = ["elbow_of_rounded_arm", "extremity", "limb_root"]
 
 Vector = NDArray[np.float64]
 LEAST_DEPTH = 0.2
-"""How far before or behind the shoulder a named position stays at least, as a share of the reach."""
+"""How far before or behind the shoulder a named position stays, as a share of the reach."""
 _GRAZE = 1e-3
 """A sign may lie this much (m) outside the sphere of reach before it is refused."""
 
@@ -43,9 +43,10 @@ def extremity(
 ) -> Vector:
     """Where a sign puts a wrist or ankle (or, with the bone's length, an elbow or knee).
 
-    Height by eq. 4.1; a level extremity by eq. 4.2 (its width is what Pythagoras leaves); one in
-    front or behind by width and eq. 4.3, with the squares on the differences that the printed
-    formula lost: y^2 = l^2 - (x - c_x)^2 - (z - c_z)^2.
+    Height by eq. 4.1; a level extremity by eq. 4.2, whose width is what Pythagoras leaves (of its
+    two roots, the one nearer to the written width); one in front or behind by width and eq. 4.3,
+    with the squares on the differences that the printed formula lost:
+    y^2 = l^2 - (x - c_x)^2 - (z - c_z)^2.
 
     Args:
         figure: The dancer's lengths.
@@ -70,11 +71,13 @@ def extremity(
     outward = 1.0 if side is Side.LEFT else -1.0
     z = figure.height(sign.height, leg=leg) - origin[2]
     rise = z - centre[2]
+    y = outward * sign.width * figure.full_width(leg=leg)
     if sign.depth is Depth.LEVEL:
         beyond = length**2 - rise**2
         _check_reach(beyond, length, sign, leg, source)
-        return np.array([centre[0], centre[1] + outward * sqrt(max(beyond, 0.0)), z])
-    y = outward * sign.width * figure.full_width(leg=leg)
+        aside = sqrt(max(beyond, 0.0))
+        places = (centre[1] + outward * aside, centre[1] - outward * aside)
+        return np.array([centre[0], min(places, key=lambda place: abs(place - y)), z])
     if gives:
         most = sqrt(max((1 - LEAST_DEPTH**2) * length**2 - (y - centre[1]) ** 2, 0.0))
         rise = min(max(rise, -most), most)

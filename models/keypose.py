@@ -190,8 +190,8 @@ class KeyPoseSolver:
 
         Args:
             target: What the score asks.
-            guess: A configuration (nq,) nearby, such as the pose before; differential IK from
-                standing if None.
+            guess: A configuration (nq,) nearby, such as the pose before. Without one, or where no
+                legal pose is found from it, differential IK leads there from standing.
 
         Returns:
             The pose and its certificate, which says itself whether the rules hold.
@@ -199,6 +199,13 @@ class KeyPoseSolver:
         Raises:
             PoseError: The solver produced no finite pose.
         """
+        if guess is not None:
+            near = self._solve_from(target, guess)
+            if near.held:
+                return near
+        return self._solve_from(target, None)
+
+    def _solve_from(self, target: PoseTarget, guess: NDArray[np.float64] | None) -> KeyPose:
         problem = self.problem(target)
         parameters = problem.parameters(target)
         start = perf_counter()

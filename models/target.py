@@ -53,6 +53,13 @@ class ArmTarget:
     wrist_cross: float = 0.0
     forearm_turn: float = 0.0
 
+    @property
+    def elbow_bend(self) -> float:
+        """Bend of the elbow between its two bones, rad (eq. 4.8 from the straight arm)."""
+        upper, lower = self.elbow - self.shoulder, self.wrist - self.elbow
+        cosine = upper @ lower / (np.linalg.norm(upper) * np.linalg.norm(lower))
+        return float(np.arccos(np.clip(cosine, -1.0, 1.0)))
+
 
 @dataclass(frozen=True, slots=True)
 class PoseTarget:

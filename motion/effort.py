@@ -114,11 +114,12 @@ PRESETS: Mapping[str, Preset] = MappingProxyType(
 )
 
 
-def find_effort(text: str) -> tuple[Effort, float | None, str]:
+def find_effort(text: str | None) -> tuple[Effort, float | None, str]:
     """An effort by preset name or by numbers.
 
     Args:
-        text: "happy", or "time=-3.5,weight=.41,space=1" (what is left out is natural's).
+        text: "happy", or "time=-3.5,weight=.41,space=1" (what is left out is natural's); None is
+            natural without its tempo.
 
     Returns:
         The effort, the preset's tempo (None for numbers) and a name for it.
@@ -126,6 +127,8 @@ def find_effort(text: str) -> tuple[Effort, float | None, str]:
     Raises:
         MotionError: Neither a preset nor numbers in range.
     """
+    if text is None:
+        return PRESETS["natural"].effort, None, "natural"
     word = text.strip().lower()
     if word in PRESETS:
         preset = PRESETS[word]

@@ -197,6 +197,10 @@ def _arm_at(
     else:
         elbow = (1 - k) * path.start.elbow + k * path.end.elbow
     arm = ArmTarget(shape, path.start.shoulder, wrist, elbow, **blend)
+    if shape is ArmShape.ROUNDED:
+        # An arm drawn in curves more at the elbow; a hand that curved on as well would cross over.
+        at_rest = (1 - k) * path.start.elbow_bend + k * path.end.elbow_bend
+        arm = replace(arm, wrist_bend=arm.wrist_bend - max(arm.elbow_bend - at_rest, 0.0))
     if not inflect or path.waits or shape is ArmShape.STRAIGHT:
         return arm
     bend, cross = inflected(arm, path.side, path.heading(k), k, effort.weight)

@@ -40,7 +40,9 @@ ROUNDING = 0.12
 The logistic arrives at a key pose with speed left (§5.5.2, figure 5.18) and leaves it in another
 direction from rest: an acceleration without bound, which no muscle has. Muscles take 40-60 ms to
 raise their force (electromechanical delay and activation time); the motion is averaged over a
-Parzen window whose effective width (twice its standard deviation) is that long.
+Parzen window whose effective width (twice its standard deviation) is that long. A light arrival so
+ends in a jolt that the feet must take; a wider window would soften it and no longer be the effort
+that was asked.
 """
 
 

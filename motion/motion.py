@@ -120,6 +120,8 @@ class Motion:
         """
         if t >= self.time[-1]:
             return self.qpos[-1].copy(), np.zeros(self.model.nv), np.zeros(self.model.nv)
+        if t < 0.0:
+            return self.qpos[0].copy(), np.zeros(self.model.nv), np.zeros(self.model.nv)
         i = max(int(np.searchsorted(self.time, t, side="right")) - 1, 0)
         w = min(max((t - self.time[i]) / (self.time[i + 1] - self.time[i]), 0.0), 1.0)
         qpos = (1 - w) * self.qpos[i] + w * self.qpos[i + 1]

@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from enpointe.errors import FormatError
+from enpointe.errors import FormatError, MotionError
 from enpointe.files import atomic_path
 from enpointe.motion.motion import Event, Motion
 
@@ -77,11 +77,16 @@ def motion_from_arrays(
         name = str(arrays[prefix + "name"])
     except KeyError as error:
         raise FormatError(f"{error} is missing; the file is damaged or not ours", path) from None
+    except (ValueError, TypeError, IndexError) as error:
+        raise FormatError(f"parts of the motion do not fit each other ({error})", path) from None
     if own["qpos"].ndim != 2 or own["qpos"].shape[1] != model.nq:
         raise FormatError(
-            f"a motion of a body with {own['qpos'].shape[-1]} coordinates, not {model.nq}", path
+            f"a motion of a body with coordinates {own['qpos'].shape}, not {model.nq}", path
         )
-    return Motion(model, own["time"], own["qpos"], own["qvel"], own["qacc"], events, name)
+    try:
+        return Motion(model, own["time"], own["qpos"], own["qvel"], own["qacc"], events, name)
+    except (MotionError, ValueError, TypeError, IndexError) as error:
+        raise FormatError(f"not a motion: {error}", path) from None
 
 
 def load_arrays(path: Path, expected: str) -> dict[str, NDArray[np.generic]]:

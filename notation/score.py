@@ -95,8 +95,22 @@ class Score:
         return pulses * 60.0 / pulse
 
     def duration(self, tempo: float | None = None) -> float:
-        """The time of the last frame, in seconds from the start; see :meth:`seconds`."""
-        return self.seconds(self.frames[-1].beat if self.frames else 0, tempo)
+        """The time of the last frame, in seconds from the start; see :meth:`seconds`.
+
+        Raises:
+            ScoreError: It is longer than :data:`LONGEST`, or the tempo can't be danced.
+        """
+        length = self.seconds(self.frames[-1].beat if self.frames else 0, tempo)
+        if length > LONGEST:
+            at = self.frames[-1].at
+            raise ScoreError(
+                f"this dance would last {length:.0f} s, more than {LONGEST:.0f}; "
+                "look at the last beats or the tempo",
+                at.line,
+                at.column,
+                self.source,
+            )
+        return length
 
     def performed(self) -> Score:
         """The score with its repeats written out, which is what a body dances.

@@ -81,20 +81,20 @@ ARM_PLACES: Mapping[str, ArmPlace] = {
         Sign(0.28, 2.64, Depth.FRONT), "at the side, fingertips near the thigh", _THESIS
     ),
     "bas": ArmPlace(
-        Sign(0.17, 2.68, Depth.FRONT), "low, rounded, just off the front of the thighs", _THESIS
+        Sign(0.185, 2.68, Depth.FRONT), "low, rounded, just off the front of the thighs", _THESIS
     ),
     "avant": ArmPlace(
-        Sign(0.20, 3.50, Depth.FRONT),
+        Sign(0.21, 3.50, Depth.FRONT),
         "in front, at the base of the breastbone",
         "ABT, port de bras (gateway); webref, Positions des bras (height)",
     ),
     "haut": ArmPlace(
-        Sign(0.18, 5.70, Depth.FRONT),
+        Sign(0.20, 5.75, Depth.FRONT),
         "overhead, some 20 cm in front of the crown",
         f"{_THESIS}; balletterms.net (15 to 25 cm)",
     ),
     "seconde": ArmPlace(
-        Sign(0.94, 3.72, Depth.FRONT),
+        Sign(0.955, 3.72, Depth.FRONT),
         "to the side, sloping down, never behind the shoulder",
         _THESIS,
     ),

@@ -21,6 +21,7 @@ __all__ = ["CONTROL_PERIOD", "SimulatedBody"]
 
 CONTROL_PERIOD = 0.002
 """s between commands: 500 Hz."""
+EARTH = -9.81
 FALLEN = 0.6
 """A dancer whose centre of mass is below this share of its first height has fallen."""
 
@@ -52,7 +53,7 @@ class SimulatedBody:
         period: float = CONTROL_PERIOD,
     ) -> None:
         _refuse_help(model)
-        self._substeps = round(period / model.opt.timestep)
+        self._substeps = round(period / model.opt.timestep) if np.isfinite(period) else 0
         if self._substeps < 1 or abs(self._substeps * model.opt.timestep - period) > 1e-9:
             raise BodyError(
                 f"the control period {period:g} s must be a multiple of the time step"
@@ -62,12 +63,13 @@ class SimulatedBody:
         self.fault: str | None = None
         self.model = _with_affine_actuators(model)
         self.data = mujoco.MjData(self.model)
-        self.data.qpos[:] = qpos
-        self.data.qvel[:] = 0.0 if qvel is None else qvel
+        self.data.qpos[:] = _checked("qpos", qpos, model.nq)
+        self.data.qvel[:] = 0.0 if qvel is None else _checked("qvel", qvel, model.nv)
         mujoco.mj_forward(self.model, self.data)
         self._first_com_height = float(self.data.subtree_com[0, 2])
         self._contacts = ContactReader(self.model)
         self._root_force = np.zeros(6)
+        self._steps = 0
         self._fresh = np.zeros(self.model.nu)
         self._valid = np.ones(self.model.nu, dtype=bool)
 
@@ -79,7 +81,7 @@ class SimulatedBody:
     def read(self) -> State:
         """The state now; a simulated body knows all of it at once."""
         return State(
-            time=float(self.data.time),
+            time=self._steps * self.model.opt.timestep,
             qpos=self.data.qpos.copy(),
             qvel=self.data.qvel.copy(),
             effort=self.data.actuator_force.copy(),
@@ -103,6 +105,7 @@ class SimulatedBody:
             + command.damping * command.velocity
         )
         self._root_force[:] = 0.0
+        self._steps += self._substeps
         for _ in range(self._substeps):
             mujoco.mj_step(model, data)
             np.maximum(self._root_force, np.abs(_help(data)), out=self._root_force)
@@ -119,13 +122,7 @@ class SimulatedBody:
 
     def _check(self, command: Command) -> None:
         for name in ("position", "velocity", "torque", "stiffness", "damping"):
-            value = getattr(command, name)
-            if value.shape != (self.model.nu,):
-                raise BodyError(
-                    f"command {name} must have shape ({self.model.nu},), got {value.shape}"
-                )
-            if not np.all(np.isfinite(value)):
-                raise BodyError(f"command {name} has values that are not numbers")
+            _checked(f"command {name}", getattr(command, name), self.model.nu)
 
     def _judge(self) -> None:
         # MuJoCo resets a diverged simulation to its first state and leaves a warning behind.
@@ -136,23 +133,36 @@ class SimulatedBody:
         )
         if any(self.data.warning[w].number for w in bad):
             self.fault = "the simulation diverged"
-        elif self.data.subtree_com[0, 2] < FALLEN * self._first_com_height:
+        elif self._contacts.lies or self.data.subtree_com[0, 2] < FALLEN * self._first_com_height:
             self.fault = "fell"
+
+
+def _checked(name: str, value: NDArray[np.float64], length: int) -> NDArray[np.float64]:
+    array = np.asarray(value, dtype=float)
+    if array.shape != (length,):
+        raise BodyError(f"{name} must have shape ({length},), got {array.shape}")
+    if not np.all(np.isfinite(array)):
+        raise BodyError(f"{name} has values that are not numbers")
+    return array
 
 
 def _help(data: mujoco.MjData) -> NDArray[np.float64]:
     """Force and moment on the root from anything but gravity, floor and the dancer's own limbs."""
-    direct = data.qfrc_applied[:6] + data.qfrc_actuator[:6]
-    pulls = data.xfrc_applied.sum(axis=0)
-    return np.asarray(np.abs(direct) + np.abs(pulls))
+    direct = np.abs(data.qfrc_applied[:6]) + np.abs(data.qfrc_actuator[:6])
+    passive = np.abs(data.qfrc_passive[:6])
+    pulls = np.abs(data.xfrc_applied).sum(axis=0)
+    return np.asarray(direct + passive + pulls)
 
 
 def _refuse_help(model: mujoco.MjModel) -> None:
     if model.nmocap or model.neq:
         raise BodyError("a dancer has no mocap bodies and no equality constraints to hold on to")
     forbidden = mujoco.mjtDisableBit.mjDSBL_GRAVITY | mujoco.mjtDisableBit.mjDSBL_CONTACT
-    if model.opt.disableflags & forbidden or model.opt.gravity[2] >= 0:
-        raise BodyError("gravity and contact must be on; this stage has no others")
+    earth = np.allclose(model.opt.gravity, [0.0, 0.0, EARTH], atol=0.05)
+    if model.opt.disableflags & forbidden or not earth:
+        raise BodyError("gravity and contact must be on and the earth's; this stage has no others")
+    if np.any(model.body_gravcomp) or np.any(model.dof_damping[:6]):
+        raise BodyError("gravity compensation or a damped root would carry the dancer")
 
 
 def _with_affine_actuators(model: mujoco.MjModel) -> mujoco.MjModel:

@@ -18,6 +18,10 @@ class ContactReader:
 
     Args:
         model: With a floor plane and sole spheres.
+
+    Attributes:
+        soles: Sole geoms, (S,).
+        lies: Whether anything but a sole rested on the floor in the last step.
     """
 
     def __init__(self, model: mujoco.MjModel) -> None:
@@ -30,6 +34,7 @@ class ContactReader:
         self._depth = np.zeros(len(self.soles))
         self._others = 0
         self._other_force = 0.0
+        self.lies = False
 
     def read(self, data: mujoco.MjData) -> None:
         """Take the contacts of `data`, right after a step."""
@@ -38,6 +43,7 @@ class ContactReader:
         self._point[:] = data.geom_xpos[self.soles]
         self._point[:, 2] -= self._model.geom_size[self.soles, 0]
         self._others, self._other_force = 0, 0.0
+        self.lies = False
         wrench = np.zeros(6)
         for i in range(data.ncon):
             contact = data.contact[i]
@@ -45,6 +51,8 @@ class ContactReader:
             row = self._sole_row(contact)
             if row is None:
                 self._others += int(wrench[0] > 0.0)
+                floored = contact.geom1 in self._floors or contact.geom2 in self._floors
+                self.lies = self.lies or (floored and wrench[0] > 0.0)
                 self._other_force = max(self._other_force, float(np.linalg.norm(wrench[:3])))
                 continue
             # The contact frame's first axis points from the first geom to the second.

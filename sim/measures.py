@@ -47,7 +47,8 @@ class Measures:
         error: (N, nu), joints behind their reference, rad.
         torque_fraction: (N, nu), torque given over torque limit.
         flights: In order.
-        fell_at: s, or None.
+        capture_margin: (N,), capture point to the edge of the support, m, positive inside.
+        fell_at: s from which the weight never came back over the feet, or None.
         root_force_max: N.
         other_contact_max: Largest force of a contact that was no sole on the floor, N.
     """
@@ -60,6 +61,7 @@ class Measures:
     error: Array
     torque_fraction: Array
     flights: tuple[Flight, ...]
+    capture_margin: Array
     fell_at: float | None
     root_force_max: float
     other_contact_max: float
@@ -108,7 +110,7 @@ def measure(recording: Recording) -> Measures:
     )
     cop = np.array([balance.centre_of_pressure(p, f) for p, f in zip(points, forces, strict=True)])
     limit = recording.model.actuator_forcerange[:, 1]
-    fell = recording.fault is not None
+    capture = _capture_margins(recording, points, forces, com)
     return Measures(
         com=com,
         cop=cop,
@@ -118,10 +120,44 @@ def measure(recording: Recording) -> Measures:
         error=_joint_error(recording),
         torque_fraction=np.abs(recording.effort) / limit,
         flights=_flights(recording, forces, com),
-        fell_at=float(recording.time[-1]) if fell else None,
+        capture_margin=capture,
+        fell_at=_fell_at(recording, margins, capture),
         root_force_max=float(np.max(channels["root_force"])),
         other_contact_max=float(np.max(channels["other_force"])),
     )
+
+
+def _capture_margins(recording: Recording, points: Array, forces: Array, com: Array) -> Array:
+    """Margins of the capture point  c + c' sqrt(h / g)  (Hof et al. 2005, extrapolated CoM).
+
+    Where it is outside the support, no foot on that support stops the fall.
+    """
+    gravity = float(-recording.model.opt.gravity[2])
+    velocity = np.gradient(com, recording.time, axis=0) if len(com) > 1 else np.zeros_like(com)
+    height = np.maximum(com[:, 2], 0.0)
+    capture = com[:, :2] + velocity[:, :2] * np.sqrt(height / gravity)[:, None]
+    return np.array(
+        [
+            balance.margin(balance.support(p, f), x)
+            for p, f, x in zip(points, forces, capture, strict=True)
+        ]
+    )
+
+
+def _fell_at(recording: Recording, margins: Array, capture: Array) -> float | None:
+    """When the fall began: the dance ends with a fault, or with the weight past saving.
+
+    A dancer may pass through positions that no statue holds; she has fallen if she is still outside
+    her support at the end.
+    """
+    if recording.fault is None and capture[-1] >= -TOPPLING:
+        return None
+    inside = np.flatnonzero(margins >= 0.0)
+    return float(recording.time[inside[-1]]) if len(inside) else 0.0
+
+
+TOPPLING = 0.005
+"""How far outside its support the capture point may end before the dancer counts as falling, m."""
 
 
 def _foot_forces(model: mujoco.MjModel, forces: Array) -> Array:

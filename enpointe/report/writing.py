@@ -7,7 +7,7 @@ from pathlib import Path
 
 from enpointe.comparing import Comparison
 from enpointe.files import atomic_path, write_bytes
-from enpointe.models import KeyPose, dancer_model
+from enpointe.models import KeyPose
 from enpointe.notation import Score
 from enpointe.notation.stave import stave_svg
 from enpointe.performing import Performance, Progress
@@ -95,7 +95,7 @@ def _draw(
     """The files beside the page by name, the page, and the warning."""
     if isinstance(dance, Poses):
         score, poses = dance.score, dance.key_poses
-        model = dancer_model()
+        model = dance.model
         views = {
             "from the front": View.audience(),
             "from the side": View.wings(),

@@ -121,10 +121,7 @@ class RoundedElbow(_ArmRule):
         return bend - symbols(f"{self.side}_elbow_bend")
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
-        arm = self._arm(target)
-        upper, lower = arm.elbow - arm.shoulder, arm.wrist - arm.elbow
-        cosine = upper @ lower / (np.linalg.norm(upper) * np.linalg.norm(lower))
-        return {f"{self.side}_elbow_bend": np.arccos(np.clip(cosine, -1, 1))}
+        return {f"{self.side}_elbow_bend": np.array(self._arm(target).elbow_bend)}
 
 
 class ForearmTurn(_ArmRule):

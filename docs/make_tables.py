@@ -1,0 +1,202 @@
+"""Writes the tables of the docs that are made from the code, between their markers.
+
+    python docs/make_tables.py
+
+A table stands between `<!-- made by docs/make_tables.py: NAME -->` and `<!-- end -->`.
+tests/docs fails where a page and the code differ.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+from inspect import isabstract
+from pathlib import Path
+
+from enpointe.models import rules
+from enpointe.models.anatomy import ANKLE, ELBOW, HIP, KNEE, NECK, SHOULDER, TOE, WAIST, WRIST
+from enpointe.models.anthropometry import Anthropometry, Sex
+from enpointe.models.rules import Kind, Rule
+from enpointe.motion import PRESETS
+from enpointe.notation.frames import DEFAULT_DEGREES
+from enpointe.notation.glyphs import GLYPHS
+from enpointe.notation.vocabulary import ARM_PLACES, ARMS, FEET
+
+DOCS = Path(__file__).parent
+MARKED = re.compile(
+    r"(<!-- made by docs/make_tables\.py: (\w+) -->\n).*?(<!-- end -->)", flags=re.DOTALL
+)
+SEGMENTS = (
+    "head",
+    "upper_trunk",
+    "middle_trunk",
+    "lower_trunk",
+    "upper_arm",
+    "forearm",
+    "hand",
+    "thigh",
+    "shank",
+    "foot",
+)
+
+
+def table(heads: Iterable[str], rows: Iterable[Iterable[object]]) -> str:
+    """A Markdown table with a blank line before and after."""
+    heads = list(heads)
+    lines = [heads, ["---"] * len(heads), *rows]
+    return "\n" + "".join(f"| {' | '.join(str(c) for c in line)} |\n" for line in lines) + "\n"
+
+
+def feet() -> str:
+    return table(
+        ("feet", "also called", "says which foot is in front", "is", "source"),
+        (
+            (e.name, ", ".join(e.aliases), "yes" if e.crossed else "no", e.description, e.source)
+            for e in FEET
+        ),
+    )
+
+
+def arms() -> str:
+    return table(
+        ("arms", "also called", "leading arm", "other arm", "is", "source"),
+        ((e.name, ", ".join(e.aliases), e.leading, e.other, e.description, e.source) for e in ARMS),
+    )
+
+
+def places() -> str:
+    def sign(name: str) -> str:
+        wrist = ARM_PLACES[name].wrist
+        straight = ", straight" if wrist.straight else ""
+        return f"{wrist.width:g} wide, {wrist.height:g} high, {wrist.depth}{straight}"
+
+    return table(
+        ("place", "sign of the wrist", "is", "source of the words"),
+        ((name, sign(name), p.description, p.source) for name, p in ARM_PLACES.items()),
+    )
+
+
+def degrees() -> str:
+    parts = ("head", "body", "pelvis")
+    turns = ("turn", "tilt", "bend")
+    return table(
+        ("", *turns),
+        ((part, *(f"{DEFAULT_DEGREES[part, turn]:g}°" for turn in turns)) for part in parts),
+    )
+
+
+def glyphs() -> str:
+    return table(
+        ("sign", "shape", "source"),
+        (
+            (name, "confirmed" if g.confirmed else "provisional", g.source)
+            for name, g in GLYPHS.items()
+        ),
+    )
+
+
+def presets() -> str:
+    return table(
+        ("effort", "time $b$", "weight $x_0$", "space $S$", "tempo", "source"),
+        (
+            (
+                p.name,
+                f"{p.effort.time:g}",
+                f"{p.effort.weight:g}",
+                f"{p.effort.space:g}",
+                f"{p.tempo:g}",
+                p.source,
+            )
+            for p in PRESETS.values()
+        ),
+    )
+
+
+def segments() -> str:
+    bodies = (Anthropometry(), Anthropometry(1.80, 72.0, Sex.MALE))
+
+    def row(name: str) -> list[str]:
+        cells = [name.replace("_", " ")]
+        for body in bodies:
+            s = body.segment(name)
+            cells += [
+                f"{1000 * s.length:.0f}",
+                f"{s.mass:.2f}",
+                f"{1000 * s.com:.0f}",
+                ", ".join(f"{1000 * r:.0f}" for r in s.gyration),
+            ]
+        return cells
+
+    heads = ["segment"]
+    for who in ("she", "he"):
+        heads += [f"{who}: length", "mass", "centre", "gyration"]
+    return table(heads, map(row, SEGMENTS))
+
+
+def joints() -> str:
+    def axis(v: Iterable[float]) -> str:
+        return "(" + ", ".join(f"{x:.2g}".replace("0.71", ".71") for x in v) + ")"
+
+    groups = (WAIST, NECK, SHOULDER, ELBOW, WRIST, HIP, KNEE, ANKLE, TOE)
+    return table(
+        ("hinge", "axis, left side", "range", "strength, N m/kg", "armature", "damping"),
+        (
+            (
+                f"`{h.name}`",
+                axis(h.axis),
+                f"{h.range_deg[0]:g}° to {h.range_deg[1]:g}°",
+                f"{h.strength:g}",
+                f"{h.armature:g}",
+                f"{h.damping:g}",
+            )
+            for group in groups
+            for h in group
+        ),
+    )
+
+
+def ballet() -> str:
+    found = [value for value in vars(rules).values() if _is_rule(value)]
+    words = {
+        Kind.EQUAL: "equation",
+        Kind.AT_LEAST: "inequality",
+        Kind.PREFER: "cost",
+        Kind.CHECK: "checked only",
+    }
+    return table(
+        ("rule", "the solver sees", "holds within", "weight", "source"),
+        (
+            (
+                r.name,
+                words[r.kind],
+                f"{'at least ' if r.kind is Kind.AT_LEAST else ''}{r.bound:g} "
+                f"{'°' if r.unit == 'deg' else r.unit}".replace(" °", "°"),
+                f"{r.weight:g}" if r.kind is Kind.PREFER else "",
+                r.source,
+            )
+            for r in sorted(found, key=lambda r: (r.__module__, r.name))
+        ),
+    )
+
+
+def _is_rule(value: object) -> bool:
+    return isinstance(value, type) and issubclass(value, Rule) and not isabstract(value)
+
+
+TABLES: dict[str, Callable[[], str]] = {
+    f.__name__: f for f in (feet, arms, places, degrees, glyphs, presets, segments, joints, ballet)
+}
+
+
+def filled(text: str) -> str:
+    """A page with its tables made anew."""
+    return MARKED.sub(lambda m: m[1] + TABLES[m[2]]() + m[3], text)
+
+
+if __name__ == "__main__":
+    for page in sorted(DOCS.glob("*.md")):
+        old = page.read_text(encoding="utf-8")
+        new = filled(old)
+        if new != old:
+            page.write_text(new, encoding="utf-8")
+            print(page.name)
