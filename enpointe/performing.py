@@ -58,7 +58,8 @@ class Performance:
 
     @property
     def score(self) -> Score:
-        return self.choreography.score
+        """The score as it is written."""
+        return self.choreography.written
 
     @property
     def danced(self) -> Motion:

@@ -4,22 +4,12 @@ from __future__ import annotations
 
 import difflib
 from dataclasses import dataclass
-from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from enpointe.errors import EnpointeError
-from enpointe.notation import (
-    ArmsPosition,
-    FeetPosition,
-    Frame,
-    Score,
-    Side,
-    load_score,
-    names,
-    shipped_scores,
-)
-from enpointe.notation.vocabulary import find_arms, find_feet
+from enpointe.notation import Score, load_score, names, parse_score, shipped_scores
+from enpointe.notation.vocabulary import find_arms, find_feet, find_pose
 from enpointe.performing import check_reach
 
 if TYPE_CHECKING:
@@ -108,20 +98,30 @@ def pose(
 def vocabulary_score(name: str) -> Score | None:
     """A score of one frame that shows a position of the vocabulary, or None for another name.
 
-    The rest of the body stands in first position with the arms en bas; where one side leads, it is
-    the right.
+    The rest of the body stands in first position with the arms en bas, a working leg beside the
+    other, arms a la seconde. Where one side leads or works, it is the right.
     """
     part, _, position = name.partition(" ")
-    feet, arms = FeetPosition("first"), ArmsPosition("fifth en bas")
-    if part == "feet" and (entry := find_feet(position)) is not None:
-        feet = FeetPosition(entry.name, Side.RIGHT if entry.crossed else None)
-    elif part == "arms" and (arms_entry := find_arms(position)) is not None:
-        leading = Side.RIGHT if arms_entry.needs_leading else None
-        arms = ArmsPosition(arms_entry.name, leading)
+    closed = position.removesuffix(" open")
+    if part == "feet" and (entry := find_feet(closed)) is not None:
+        spread = " open" if closed != position else ""
+        front = " right front" if entry.crossed else ""
+        lines = [f"feet: {entry.name}{spread}{front}", _ARMS_AT_REST]
+    elif part == "arms" and (arms := find_arms(position)) is not None:
+        leads = " right leads" if arms.needs_leading else ""
+        lines = ["feet: first", f"arms: {arms.name}{leads}"]
+    elif name in names() and part == "leg":
+        lines = [_ON_THE_LEFT, "arms: a la seconde", f"right leg: {position}"]
+    elif part == "pose" and find_pose(position) is not None:
+        lines = [f"pose: {position} on left"]
     else:
         return None
-    frame = Frame(beat=Fraction(0), feet=feet, arms=arms)
-    return Score(name, "Cecchetti", (4, 4), 60.0, (frame,))
+    header = f'benesh 1\ntitle: "{name}"\nmethod: Cecchetti\nmetre: 4/4\ntempo: 60\nbeat 0:\n'
+    return parse_score(header + "\n".join(lines) + "\n", name)
+
+
+_ARMS_AT_REST = "arms: fifth en bas"
+_ON_THE_LEFT = "left foot: 0 wide, 1 high, level"
 
 
 def _find(source: str | Path) -> Score:

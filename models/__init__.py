@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from enpointe.models.keypose import KeyPose as KeyPose
     from enpointe.models.keypose import KeyPoseSolver as KeyPoseSolver
     from enpointe.models.kinematics import Kinematics as Kinematics
-    from enpointe.models.target import PoseTarget as PoseTarget
     from enpointe.models.style import Style as Style
+    from enpointe.models.target import PoseTarget as PoseTarget
     from enpointe.models.target import pose_target as pose_target
 
 _HOMES = {

@@ -90,7 +90,7 @@ WRIST = (
     Hinge("wrist_cross", (0, -1, 0), (-35, 25), 0.2, 0.001, 0.02),
 )
 HIP = (
-    Hinge("hip_raise", (_D, -_D, 0), (-115, 150), 4.2, 0.02, 0.5),
+    Hinge("hip_raise", (_D, -_D, 0), (-145, 150), 4.2, 0.02, 0.5),
     Hinge("hip_cross", (-_D, -_D, 0), (-85, 85), 4.0, 0.02, 0.5),
     # Wide: with the leg raised, part of a turn of the thigh about itself shows up in this hinge and
     # part in the two before it. The rule of the hip's rotation holds the anatomy.

@@ -20,9 +20,9 @@ from enpointe.notation import FeetPosition, Side
 
 __all__ = ["DEFAULT_TURNOUT_DEG", "TURNOUT_RANGE_DEG", "Footprint", "footprints", "support_hull"]
 
-DEFAULT_TURNOUT_DEG = 70.0
+DEFAULT_TURNOUT_DEG = 66.0
 """Each foot from straight ahead. 45 dancers of the Australian Ballet showed 133.6 deg in first
-position, both feet together; taken up a little for a principal."""
+position, both feet together. Feet turned out farther than hip and shin follow roll the knees in."""
 TURNOUT_RANGE_DEG = (30.0, 75.0)
 _CLEARANCE = 0.005
 """Air between two feet that touch, m: contact between them is the dancer's choice, not a fault."""
@@ -98,9 +98,12 @@ def _crossed(figure: Figure, position: FeetPosition, turnout: float) -> dict[Sid
     along = np.array([cos(turnout), sin(turnout)])
     before = np.array([sin(turnout), -cos(turnout)])
     heel = share * heel_to_ball * along + gap * before
-    if position.name == "fourth":
-        heel = heel + np.array([figure.foot_length - gap, 0.0])
     front = _from_heel(figure, heel, -turnout)
+    if position.name == "fourth":
+        # Opposite the fifth (croisee) or, open, opposite the first: heel before heel.
+        aside = 0.0 if position.open else front.ankle[1] - back.ankle[1]
+        place = back.ankle + np.array([figure.foot_length, aside])
+        front = Footprint(place, -turnout)
     if position.front is Side.RIGHT:
         return {Side.LEFT: back, Side.RIGHT: front}
     return {Side.RIGHT: _mirrored(back), Side.LEFT: _mirrored(front)}

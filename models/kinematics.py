@@ -104,9 +104,7 @@ class Kinematics:
         return np.asarray(positions).T, stacked, np.asarray(com).ravel()
 
 
-def qpos_from_tangent(
-    model: mujoco.MjModel, tangent: ca.SX, facing: ca.SX | float = 0.0
-) -> ca.SX:
+def qpos_from_tangent(model: mujoco.MjModel, tangent: ca.SX, facing: ca.SX | float = 0.0) -> ca.SX:
     """A configuration (nq, 1) from root position, root rotation vector and hinge angles (nv, 1).
 
     The rotation vector is about the upright that faces `facing` (rad), so that it stays small

@@ -16,6 +16,8 @@ from enpointe.notation import Bend, Direction, FloorContact, ResolvedLeg, Side
 
 __all__ = [
     "DEMI_POINTE_DEG",
+    "FOOT_JOINTS",
+    "POINTED_DEG",
     "InAir",
     "LegTarget",
     "OnPointe",
@@ -119,14 +121,26 @@ class InAir:
         ankle: (3,), m.
         knee: (3,), m, or None for a stretched leg.
         turnout: rad.
-        passing: Whether the leg is on its way: the foot then points as far as the floor lets it, and
-            the ankle keeps to its way as well as the floor lets it.
+        foot: For a leg on its way, the angles that the foot passes through, in the order of
+            `FOOT_JOINTS`, (4,), rad; None for a leg in its place, whose foot is pointed. A leg on
+            its way keeps to it as well as the floor lets it.
     """
 
     ankle: Vector
     knee: Vector | None
     turnout: float
-    passing: bool = False
+    foot: Vector | None = None
+
+    @property
+    def passing(self) -> bool:
+        """Whether the leg is on its way."""
+        return self.foot is not None
+
+
+FOOT_JOINTS = ("ankle_point", "ankle_turn", "ankle_roll", "toe_raise")
+POINTED_DEG = (75.0, 0.0, 0.0, -15.0)
+"""A stretched foot, in the order of `FOOT_JOINTS`: instep out, toes carrying the line on. Dancers'
+ankles go to 77-83 degrees (Russell et al. 2010)."""
 
 
 LegTarget = Standing | OnPointe | ToeOnFloor | ToeOnLeg | InAir
@@ -169,16 +183,14 @@ def leg_target(
         ankle = extremity(figure, side, leg.foot, figure.stretched_leg, leg=True, source=source)
         return InAir(ankle, None, turnout)
     knee = extremity(figure, side, leg.knee, figure.thigh, leg=True, source=source)
-    ankle = extremity(
-        figure, side, leg.foot, figure.shank, leg=True, root=knee, source=source
-    )
+    ankle = extremity(figure, side, leg.foot, figure.shank, leg=True, root=knee, source=source)
     return InAir(ankle, knee, turnout)
 
 
 _LINES = {True: (0.0, 1.0), False: (1.0, 0.0)}
-_TOUCHES = ("tendu", "retir\u00e9", "cou-de-pied")
-# Where the pointed toe is: forward of the other leg's joint, to the working side, up; m. The toe has
-# a thickness and so has the leg: it lies on the flesh, not on the bone.
+_TOUCHES = ("tendu", "retiré", "cou-de-pied")
+# Where the pointed toe is: forward of the other leg's joint, to the working side, up; m. Toe and
+# leg have a thickness: it lies on the flesh, not on the bone.
 _RETIRE = {
     Direction.DEVANT: (0.075, 0.015, 0.0),
     Direction.SECONDE: (0.0, 0.075, 0.0),

@@ -12,8 +12,9 @@ import mink
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
-from enpointe.models.leg_target import InAir, LegTarget, OnPointe, Standing, ToeOnFloor, ToeOnLeg
+from enpointe.models.leg_target import InAir, OnPointe, Standing, ToeOnFloor, ToeOnLeg
 from enpointe.models.rules.balance import centroid
 from enpointe.models.target import ArmShape, PoseTarget, turn_tilt_bend
 from enpointe.notation import Side
@@ -68,7 +69,7 @@ def starting_pose(model: mujoco.MjModel, target: PoseTarget) -> NDArray[np.float
             f"{side}_forearm_turn": arm.forearm_turn,
             f"{side}_wrist_bend": arm.wrist_bend,
             f"{side}_wrist_cross": arm.wrist_cross,
-            **{f"{side}_{j}": v for j, v in _leg_angles(target.legs[side]).items()},
+            **{f"{side}_{j}": v for j, v in _leg_angles(target, side).items()},
         }
     for name, angle in angles.items():
         low, high = model.joint(name).range
@@ -76,7 +77,8 @@ def starting_pose(model: mujoco.MjModel, target: PoseTarget) -> NDArray[np.float
     return qpos
 
 
-def _leg_angles(leg: LegTarget) -> dict[str, float]:
+def _leg_angles(target: PoseTarget, side: Side) -> dict[str, float]:
+    leg = target.legs[side]
     if isinstance(leg, Standing):
         bend = leg.knee_bend
         return {
@@ -93,7 +95,29 @@ def _leg_angles(leg: LegTarget) -> dict[str, float]:
         return {**pointed, "hip_raise": 0.4 * leg.ahead, "hip_cross": 0.4 * leg.ahead - 0.3}
     if isinstance(leg, ToeOnLeg):
         return {**pointed, "hip_raise": 1.0, "hip_cross": -0.5, "knee_bend": 1.8}
-    return {**pointed, "knee_bend": 0.05 if leg.knee is None else 1.4}
+    hip = target.figure.hips[side]
+    knee = leg.knee if leg.knee is not None else 0.5 * (hip + leg.ankle)
+    return {**pointed, **_leg_in_air(side, knee - hip, leg.ankle - knee)}
+
+
+def _leg_in_air(
+    side: Side, thigh: NDArray[np.float64], shank: NDArray[np.float64]
+) -> dict[str, float]:
+    """Hip and knee angles that point thigh and shank along two directions, in closed form.
+
+    With the hip's swing axes a1, a2 at 45 degrees, the thigh's direction d has d . a1 = sin(cross)
+    and swings about a1 by `raise`; the shank then fixes the turn about the thigh.
+    """
+    mirror = np.array([1.0, 1.0 if side is Side.LEFT else -1.0, 1.0])
+    d, s = (mirror * v / np.linalg.norm(v) for v in (thigh, shank))
+    a1, b = np.array([1.0, -1.0, 0.0]) / np.sqrt(2), np.array([1.0, 1.0, 0.0]) / np.sqrt(2)
+    cross = float(np.arcsin(np.clip(d @ a1, -1.0, 1.0)))
+    swing = float(np.arctan2(d @ b, -d[2]))
+    turned = Rotation.from_rotvec(swing * a1) * Rotation.from_rotvec(-cross * b)
+    local = turned.inv().apply(s)
+    bend = float(np.arccos(np.clip(-local[2], -1.0, 1.0)))
+    turn = float(np.arctan2(-local[1], -local[0])) if bend > 0.1 else 0.6
+    return {"hip_raise": swing, "hip_cross": cross, "hip_turn": turn, "knee_bend": bend}
 
 
 def ik_tasks(model: mujoco.MjModel, target: PoseTarget) -> list[mink.Task]:

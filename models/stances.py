@@ -35,10 +35,10 @@ class Ground:
 class StanceTracker:
     """Follows a score and keeps the feet where they are.
 
-    A frame's own signs say where its feet are about the dancer's middle. In the world that layout is
-    laid so that the foot that bears weight before and after stays on its ball; where both feet do
-    and the position changes (an echappe), the middle between them stays. A written place or travel
-    moves the whole.
+    A frame's own signs say where its feet are about the dancer's middle. In the world that layout
+    is laid so that the foot that bears weight before and after stays on its ball; where both feet
+    do and the position changes (an echappe), the middle between them stays. A written place or
+    travel moves the whole.
 
     Args:
         figure: The dancer's lengths.

@@ -13,12 +13,20 @@ from numpy.typing import NDArray
 from enpointe.models.extremities import elbow_of_rounded_arm, extremity
 from enpointe.models.figure import Figure
 from enpointe.models.foot_positions import support_hull
-from enpointe.models.leg_target import LegTarget, OnPointe, Standing, InAir, ToeOnLeg, leg_target
+from enpointe.models.leg_target import InAir, LegTarget, OnPointe, Standing, ToeOnLeg, leg_target
 from enpointe.models.stances import Ground, StanceTracker
 from enpointe.models.style import Style
 from enpointe.notation import ArmSigns, Orientation, ResolvedFrame, Side
 
-__all__ = ["ALOFT", "ArmShape", "ArmTarget", "PoseTarget", "pose_target", "rounded_arm", "turn_tilt_bend"]
+__all__ = [
+    "ALOFT",
+    "ArmShape",
+    "ArmTarget",
+    "PoseTarget",
+    "pose_target",
+    "rounded_arm",
+    "turn_tilt_bend",
+]
 
 Vector = NDArray[np.float64]
 

@@ -20,12 +20,13 @@ reach of an elbow that is not quite straight, as the same paragraph demands.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import acos, atan2, cos, pi, radians, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
+from enpointe.models.extremities import elbow_of_rounded_arm
 from enpointe.models.figure import Figure
 from enpointe.models.target import ArmShape, ArmTarget
 from enpointe.notation import Side
@@ -106,6 +107,30 @@ class ArmPath:
             return (1 - k) * self.start.wrist + k * self.end.wrist
         return self.start.shoulder + self._reach(k) * self._direction(k)
 
+    def target(self, k: float) -> ArmTarget:
+        """The arm at `k`, its hand following the curve; no inflection yet."""
+        wrist = self.wrist(k)
+        blend = {
+            name: (1 - k) * getattr(self.start, name) + k * getattr(self.end, name)
+            for name in ("wrist_bend", "wrist_cross", "forearm_turn")
+        }
+        arm = ArmTarget(self.shape, self.start.shoulder, wrist, self._elbow(k, wrist), **blend)
+        if self.shape is not ArmShape.ROUNDED:
+            return arm
+        # An arm drawn in curves more at the elbow; a hand that curved on as well would cross over.
+        at_rest = (1 - k) * self.start.elbow_bend + k * self.end.elbow_bend
+        return replace(arm, wrist_bend=arm.wrist_bend - max(arm.elbow_bend - at_rest, 0.0))
+
+    def _elbow(self, k: float, wrist: Vector) -> Vector:
+        if self.shape is ArmShape.ROUNDED:
+            return elbow_of_rounded_arm(self.figure, self.side, wrist)
+        elbow = (1 - k) * self.start.elbow + k * self.end.elbow
+        if self.shape is ArmShape.STRAIGHT:
+            return np.asarray(elbow)
+        bone = elbow - self.start.shoulder
+        reach = self.figure.upper_arm / np.linalg.norm(bone)
+        return np.asarray(self.start.shoulder + reach * bone)
+
     def heading(self, k: float, step: float = 0.02) -> Vector:
         """Unit direction of the wrist's movement at `k`, (3,); zero for an arm that waits."""
         if self.waits:
@@ -148,4 +173,6 @@ class ArmPath:
         """How the arm is shaped on the way: as the key pose it goes to, but rounded where a rounded
         arm stretches or a stretched one rounds."""
         shapes = {self.start.shape, self.end.shape}
-        return ArmShape.ROUNDED if shapes == {ArmShape.ROUNDED, ArmShape.STRAIGHT} else self.end.shape
+        return (
+            ArmShape.ROUNDED if shapes == {ArmShape.ROUNDED, ArmShape.STRAIGHT} else self.end.shape
+        )

@@ -13,16 +13,16 @@ from dataclasses import dataclass, replace
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import CubicSpline, PchipInterpolator
 
-from enpointe.models.extremities import elbow_of_rounded_arm
 from enpointe.models.keypose import KeyPose, KeyPoseSolver
+from enpointe.models.leg_target import LegTarget
 from enpointe.models.rules.balance import centroid
-from enpointe.models.target import ALOFT, ArmShape, ArmTarget, PoseTarget
+from enpointe.models.target import ArmShape, ArmTarget, PoseTarget
 from enpointe.motion.arm_path import ArmPath
 from enpointe.motion.effort import Effort
 from enpointe.motion.inflection import inflected
-from enpointe.motion.leg_path import WEIGHT_SHIFT, LegPath
+from enpointe.motion.leg_path import STEP, LegPath
 from enpointe.motion.slerp import slerp_poses
 from enpointe.notation import Side
 
@@ -40,12 +40,16 @@ class Passage:
     Attributes:
         start: The key pose before.
         end: The next one.
-        between: The solved poses on the way, at equal shares of it.
+        between: The solved poses on the way.
+        shares: Where on the way all the poses are, start and end included; (P,), from 0 to 1.
+        steps: Whether a foot leaves the floor or comes to it on the way.
     """
 
     start: KeyPose
     end: KeyPose
     between: tuple[KeyPose, ...]
+    shares: tuple[float, ...]
+    steps: bool = False
 
     @property
     def poses(self) -> tuple[KeyPose, ...]:
@@ -55,7 +59,10 @@ class Passage:
     def curve(self, model: mujoco.MjModel) -> Callable[[Array], Array]:
         """qpos (S, nq) as a smooth function of the share of the way (S,) in [0, 1]."""
         qpos = _continuous(np.array([pose.qpos for pose in self.poses]))
-        spline = CubicSpline(np.linspace(0.0, 1.0, len(qpos)), qpos)
+        # A foot that leaves or meets the floor turns sharply there; a cubic would swing past it.
+        spline = (
+            PchipInterpolator(self.shares, qpos) if self.steps else CubicSpline(self.shares, qpos)
+        )
 
         def at(share: Array) -> Array:
             poses = np.asarray(spline(share))
@@ -73,6 +80,7 @@ def solve_passage(
     effort: Effort,
     *,
     inflect: bool = True,
+    com: Callable[[float], Array] | None = None,
 ) -> Passage:
     """Solve the poses between two key poses.
 
@@ -82,18 +90,19 @@ def solve_passage(
         end: Solved.
         effort: Its space draws the path, its weight bends the wrist.
         inflect: Let the wrists trail; False for the plain path.
+        com: The centre of mass (3,) at a share of a passage through the air, m.
     """
-    way = _Way(solver, start, end, effort, inflect)
+    way = _Way(solver, start, end, effort, inflect, com)
     between: list[KeyPose] = []
     guess = start.qpos
-    count = way.intermediate
-    for step in range(1, count + 1):
-        ahead = np.array([1.0 / (count + 2 - step)])
-        guess = slerp_poses(solver.model, guess, end.qpos, ahead)[0]
-        pose = solver.solve(way.at(step / (count + 1)), guess)
-        guess = pose.qpos
+    way.plan_contacts()
+    before = 0.0
+    for share in way.shares[1:-1]:
+        ahead = np.array([(share - before) / (1.0 - before)])
+        pose = solver.solve(way.at(share), slerp_poses(solver.model, guess, end.qpos, ahead)[0])
+        guess, before = pose.qpos, share
         between.append(pose)
-    return Passage(start, end, tuple(between))
+    return Passage(start, end, tuple(between), way.shares, way.steps)
 
 
 class _Way:
@@ -106,9 +115,12 @@ class _Way:
         end: KeyPose,
         effort: Effort,
         inflect: bool,
+        com: Callable[[float], Array] | None,
     ) -> None:
+        self._com = com
         self._solver, self._effort, self._inflect = solver, effort, inflect
         self._start, self._end = start.target, end.target
+        self._first, self._last = start, end
         self._arms = {
             side: ArmPath(
                 solver.figure,
@@ -120,12 +132,56 @@ class _Way:
             for side in Side
         }
         self._legs = {side: LegPath(solver.model, side, start, end) for side in Side}
+        if self._stepping:
+            arrives_at, leaves_at = STEP
+            self._legs = {
+                side: replace(path, arrives_at=arrives_at, leaves_at=leaves_at)
+                for side, path in self._legs.items()
+            }
 
     @property
-    def intermediate(self) -> int:
-        """Poses to solve on the way; a foot that leaves the floor or comes to it needs more."""
-        steps = any(path.leaves or path.arrives for path in self._legs.values())
-        return 2 * INTERMEDIATE + 1 if steps else INTERMEDIATE
+    def _stepping(self) -> bool:
+        """Whether the weight goes from one foot to the other: one arrives, then the other leaves."""
+        paths = self._legs.values()
+        return (
+            any(path.leaves for path in paths)
+            and any(path.arrives for path in paths)
+            and not any(path.stays for path in paths)
+        )
+
+    @property
+    def shares(self) -> tuple[float, ...]:
+        """Where poses are solved; more of them, and the very moments, where a foot steps."""
+        if not self.steps:
+            return tuple(np.linspace(0.0, 1.0, INTERMEDIATE + 2))
+        moments = [*np.linspace(0.0, 1.0, 2 * INTERMEDIATE + 3)]
+        moments += [path.leaves_at for path in self._legs.values() if path.leaves]
+        moments += [path.arrives_at for path in self._legs.values() if path.arrives]
+        return tuple(np.unique(np.round(moments, 6)))
+
+    def plan_contacts(self) -> None:
+        """Solve the poses at which a foot leaves and arrives: the swing's two ends."""
+        if not self.steps:
+            return
+        planned = {}
+        for side, path in self._legs.items():
+            lift = self._contact(side, path.leaves_at, path.before) if path.leaves else None
+            touch = self._contact(side, path.arrives_at, path.after) if path.arrives else None
+            planned[side] = replace(path, lift=lift, touch=touch)
+        self._legs = planned
+
+    def _contact(self, side: Side, share: float, standing: LegTarget) -> KeyPose:
+        """The pose at the moment a foot leaves or arrives: still or already in its place."""
+        target = self.at(share)
+        legs = {**target.legs, side: standing}
+        ends = self._first.qpos, self._last.qpos
+        guess = slerp_poses(self._solver.model, *ends, np.array([share]))[0]
+        return self._solver.solve(replace(target, legs=legs), guess)
+
+    @property
+    def steps(self) -> bool:
+        """Whether a foot leaves the floor or comes to it while another stays."""
+        return self._com is None and any(p.leaves or p.arrives for p in self._legs.values())
 
     def at(self, share: float) -> PoseTarget:
         start, end = self._start, self._end
@@ -136,10 +192,15 @@ class _Way:
         target = replace(
             start,
             arms={
-                side: _arm_at(path, path.at_share(share), self._effort, self._solver, self._inflect)
+                side: _inflected(path, path.at_share(share), self._effort.weight)
+                if self._inflect
+                else path.target(path.at_share(share))
                 for side, path in self._arms.items()
             },
-            legs={side: path.at(share) for side, path in self._legs.items()},
+            legs={
+                side: path.at(share, aloft=self._com is not None)
+                for side, path in self._legs.items()
+            },
             head=blend(start.head, end.head),
             body=blend(start.body, end.body),
             pelvis=blend(start.pelvis, end.pelvis),
@@ -151,28 +212,17 @@ class _Way:
 
     def _balance(self, target: PoseTarget, share: float) -> dict[str, Array]:
         """Where the weight is: over the feet that stay, before others leave and after they come."""
-        if len(target.support) == 0:
-            return {"com": _between_coms(self._start, self._end, share)}
+        if self._com is not None:
+            return {"com": self._com(share)}
         if len(self._start.support) == 0 or len(self._end.support) == 0:
             return {}
-        leaving = any(path.leaves for path in self._legs.values())
-        arriving = any(path.arrives for path in self._legs.values())
-        low = 0.0 if leaving or not arriving else 1.0 - WEIGHT_SHIFT
-        high = 1.0 if arriving or not leaving else WEIGHT_SHIFT
+        leaves = [path.leaves_at for path in self._legs.values() if path.leaves]
+        arrives = [path.arrives_at for path in self._legs.values() if path.arrives]
+        low = max(arrives) if arrives else 0.0
+        high = min(leaves) if leaves else 1.0
         moved = float(np.clip((share - low) / (high - low), 0.0, 1.0))
         first, last = centroid(self._start.support), centroid(self._end.support)
         return {"weight": (1 - moved) * first + moved * last}
-
-
-def _between_coms(start: PoseTarget, end: PoseTarget, share: float) -> Array:
-    """A first guess for the air, until a jump's parabola says better: straight from pose to pose."""
-    ends = [
-        pose.com
-        if pose.com is not None
-        else np.array([*centroid(pose.support), ALOFT * pose.figure.lines[-1]])
-        for pose in (start, end)
-    ]
-    return np.asarray((1 - share) * ends[0] + share * ends[1])
 
 
 def _as_solved(model: mujoco.MjModel, pose: KeyPose, side: Side) -> ArmTarget:
@@ -181,36 +231,12 @@ def _as_solved(model: mujoco.MjModel, pose: KeyPose, side: Side) -> ArmTarget:
     return replace(pose.target.arms[side], forearm_turn=turn)
 
 
-def _arm_at(
-    path: ArmPath, k: float, effort: Effort, solver: KeyPoseSolver, inflect: bool
-) -> ArmTarget:
-    wrist = path.wrist(k)
-    blend = {
-        name: (1 - k) * getattr(path.start, name) + k * getattr(path.end, name)
-        for name in ("wrist_bend", "wrist_cross", "forearm_turn")
-    }
-    shape = path.shape
-    if shape is ArmShape.WRITTEN:
-        elbow = _between_elbows(path, k, solver)
-    elif shape is ArmShape.ROUNDED:
-        elbow = elbow_of_rounded_arm(solver.figure, path.side, wrist)
-    else:
-        elbow = (1 - k) * path.start.elbow + k * path.end.elbow
-    arm = ArmTarget(shape, path.start.shoulder, wrist, elbow, **blend)
-    if shape is ArmShape.ROUNDED:
-        # An arm drawn in curves more at the elbow; a hand that curved on as well would cross over.
-        at_rest = (1 - k) * path.start.elbow_bend + k * path.end.elbow_bend
-        arm = replace(arm, wrist_bend=arm.wrist_bend - max(arm.elbow_bend - at_rest, 0.0))
-    if not inflect or path.waits or shape is ArmShape.STRAIGHT:
+def _inflected(path: ArmPath, k: float, weight: float) -> ArmTarget:
+    arm = path.target(k)
+    if path.waits or arm.shape is ArmShape.STRAIGHT:
         return arm
-    bend, cross = inflected(arm, path.side, path.heading(k), k, effort.weight)
+    bend, cross = inflected(arm, path.side, path.heading(k), k, weight)
     return replace(arm, wrist_bend=bend, wrist_cross=cross)
-
-
-def _between_elbows(path: ArmPath, k: float, solver: KeyPoseSolver) -> Array:
-    """An elbow on its way to a written place, kept at its distance from the shoulder."""
-    elbow = (1 - k) * path.start.elbow + k * path.end.elbow - path.start.shoulder
-    return path.start.shoulder + solver.figure.upper_arm * elbow / np.linalg.norm(elbow)
 
 
 def _continuous(qpos: Array) -> Array:

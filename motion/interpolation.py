@@ -21,6 +21,7 @@ from enpointe.motion.inbetween import Passage, solve_passage
 from enpointe.motion.kind import Interpolation
 from enpointe.motion.motion import Event, Motion
 from enpointe.motion.slerp import slerp_poses
+from enpointe.motion.stations import Station, build_stations
 from enpointe.notation import Score
 
 __all__ = ["Choreography", "interpolate", "solve_key_poses"]
@@ -51,22 +52,29 @@ class Choreography:
     """A score solved on a dancer: what every way of interpolating starts from.
 
     Attributes:
-        score: What is danced.
+        written: The score as it is written.
+        score: What is danced: the same with its repeats unrolled.
         solver: Of the dancer.
-        key_poses: One for each frame.
+        stations: All poses that the dance goes through, in order.
         tempo: Pulses a minute.
     """
 
+    written: Score
     score: Score
     solver: KeyPoseSolver
-    key_poses: tuple[KeyPose, ...]
+    stations: tuple[Station, ...]
     tempo: float
+
+    @property
+    def key_poses(self) -> tuple[KeyPose, ...]:
+        """One for each frame of the danced score."""
+        return tuple(station.pose for station in self.stations if station.frame is not None)
 
     @property
     def key_times(self) -> Array:
         """When each key pose is reached, s from the start of the motion, (K,)."""
-        beats = [self.score.seconds(frame.beat, self.tempo) for frame in self.score.frames]
-        return COUNT_IN + np.array(beats)
+        times = [station.time for station in self.stations if station.frame is not None]
+        return COUNT_IN + np.array(times)
 
 
 def solve_key_poses(
@@ -90,21 +98,19 @@ def solve_key_poses(
         ScoreError: A sign out of reach, or a tempo that can't be danced.
         PoseError: A frame without a pose.
     """
-    frames = score.resolved()
     score.duration(tempo)
+    danced = score.performed()
+    danced.duration(tempo)
+    frames = danced.resolved()
+    if len(frames) < 2:
+        raise MotionError(f"{score.title!r} has one frame; a motion needs two at least")
     tracker = StanceTracker(solver.figure, (style or Style()).turnout_deg)
     targets = [
         pose_target(frame, solver.figure, style, ground=tracker.follow(frame), source=score.source)
         for frame in frames
     ]
-    if len(targets) < 2:
-        raise MotionError(f"{score.title!r} has one frame; a motion needs two at least")
-    poses = []
-    for i, target in enumerate(targets):
-        poses.append(solver.solve(target))
-        if progress is not None:
-            progress(i + 1, len(targets))
-    return Choreography(score, solver, tuple(poses), tempo or score.tempo)
+    stations = build_stations(danced, frames, targets, solver, tempo, progress)
+    return Choreography(score, danced, solver, stations, tempo or score.tempo)
 
 
 def interpolate(
@@ -126,29 +132,34 @@ def interpolate(
         A motion at `RATE`, with a count-in before the first beat and a hold after the last, and a
         "key pose" event at each frame.
     """
-    key_times = choreography.key_times
-    count = round((key_times[-1] + HOLD) * RATE) + 1
+    stations = choreography.stations
+    times = COUNT_IN + np.array([station.time for station in stations])
+    count = round((times[-1] + HOLD) * RATE) + 1
     time = np.arange(count) / RATE
     model = choreography.solver.model
     qpos = np.empty((count, model.nq))
-    poses = choreography.key_poses
-    qpos[:] = poses[0].qpos
+    qpos[:] = stations[0].pose.qpos
     curves = _Curves(choreography, effort, kind)
-    for i, (begin, end) in enumerate(pairwise(key_times)):
+
+    def timing(phase: Array) -> Array:
+        return logistic(phase, effort.time, effort.weight)
+
+    for i, (begin, end) in enumerate(pairwise(times)):
         inside = (time >= begin) & (time <= end)
         phase = (time[inside] - begin) / (end - begin)
-        share = (
-            phase if kind is Interpolation.SLERP else logistic(phase, effort.time, effort.weight)
-        )
+        law = stations[i + 1].law
+        share = phase if kind is Interpolation.SLERP else law.share(phase, timing)
         qpos[inside] = curves(i)(share)
-        qpos[time > end] = poses[i + 1].qpos
+        qpos[time > end] = stations[i + 1].pose.qpos
         if progress is not None:
-            progress(i + 1, len(poses) - 1)
+            progress(i + 1, len(stations) - 1)
     if kind is not Interpolation.SLERP:
         qpos = _round_corners(qpos)
     events = [
         Event(float(t), "key pose", pose.name, float(frame.beat))
-        for t, pose, frame in zip(key_times, poses, choreography.score.frames, strict=True)
+        for t, pose, frame in zip(
+            choreography.key_times, choreography.key_poses, choreography.score.frames, strict=True
+        )
     ]
     return Motion.from_qpos(
         model, time, qpos, events=events, name=f"{choreography.score.title}, {kind.value}"
@@ -166,19 +177,29 @@ class _Curves:
         self._known: dict[tuple[bytes, bytes], Callable[[Array], Array]] = {}
 
     def __call__(self, index: int) -> Callable[[Array], Array]:
-        start, end = self._choreography.key_poses[index : index + 2]
-        key = (start.qpos.tobytes(), end.qpos.tobytes())
+        start, end = self._choreography.stations[index : index + 2]
+        key = (start.pose.qpos.tobytes(), end.pose.qpos.tobytes())
         if key not in self._known:
-            self._known[key] = self._make(start, end)
+            self._known[key] = self._make(start.pose, end.pose, end)
         return self._known[key]
 
-    def _make(self, start: KeyPose, end: KeyPose) -> Callable[[Array], Array]:
+    def _make(self, start: KeyPose, end: KeyPose, station: Station) -> Callable[[Array], Array]:
         solver = self._choreography.solver
         if self._kind is Interpolation.SLERP:
             return lambda share: slerp_poses(solver.model, start.qpos, end.qpos, share)
         inflect = self._kind is Interpolation.EXPRESSIVE
-        passage: Passage = solve_passage(solver, start, end, self._effort, inflect=inflect)
+        passage: Passage = solve_passage(
+            solver, start, end, self._effort, inflect=inflect, com=_flown(station)
+        )
         return passage.curve(solver.model)
+
+
+def _flown(station: Station) -> Callable[[float], Array] | None:
+    """The centre of mass on the way to a station, for one reached through the air."""
+    if station.flight is None:
+        return None
+    flight, (first, last) = station.flight, station.span
+    return lambda share: flight.at((1 - share) * first + share * last)
 
 
 def _round_corners(qpos: Array) -> Array:

@@ -17,14 +17,26 @@ from numpy.typing import NDArray
 
 from enpointe.models.foot_positions import Footprint
 from enpointe.models.keypose import KeyPose
-from enpointe.models.leg_target import DEMI_POINTE_DEG, InAir, LegTarget, OnPointe, Standing
+from enpointe.models.leg_target import (
+    DEMI_POINTE_DEG,
+    FOOT_JOINTS,
+    POINTED_DEG,
+    InAir,
+    LegTarget,
+    OnPointe,
+    Standing,
+)
 from enpointe.notation import Side
 
-__all__ = ["WEIGHT_SHIFT", "LegPath"]
+__all__ = ["STEP", "LegPath"]
 
 Vector = NDArray[np.float64]
-WEIGHT_SHIFT = 0.3
+ROLL = 0.5
+"""Share of a swing in which a foot rolls through from flat to pointed, or back."""
+WEIGHT_SHIFT = 0.25
 """Share of a passage in which weight moves before a foot leaves, or after it arrives."""
+STEP = (0.4, 0.6)
+"""Shares of a step, from one foot to the other, at which the one arrives and the other leaves."""
 
 
 @dataclass(frozen=True)
@@ -36,12 +48,20 @@ class LegPath:
         side: Whose leg.
         start: The key pose before.
         end: The next.
+        leaves_at: Share of the passage at which a foot that leaves is off the floor.
+        arrives_at: Share at which a foot that arrives is on it.
+        lift: The pose at the moment the foot leaves: still on the floor, the weight gone from it.
+        touch: The pose at the moment it arrives: on the floor, the weight not yet on it.
     """
 
     model: mujoco.MjModel
     side: Side
     start: KeyPose
     end: KeyPose
+    leaves_at: float = WEIGHT_SHIFT
+    arrives_at: float = 1.0 - WEIGHT_SHIFT
+    lift: KeyPose | None = None
+    touch: KeyPose | None = None
 
     @property
     def before(self) -> LegTarget:
@@ -66,12 +86,14 @@ class LegPath:
 
     def swing(self, share: float) -> float:
         """How far the swing is at `share` of the passage: 0 still standing, 1 arrived."""
-        low = WEIGHT_SHIFT if self.leaves else 0.0
-        high = 1.0 - WEIGHT_SHIFT if self.arrives else 1.0
+        low = self.leaves_at if self.leaves else 0.0
+        high = self.arrives_at if self.arrives else 1.0
         return float(np.clip((share - low) / (high - low), 0.0, 1.0))
 
-    def at(self, share: float) -> LegTarget:
-        """What the leg is asked at `share` of the passage."""
+    def at(self, share: float, *, aloft: bool = False) -> LegTarget:
+        """What the leg is asked at `share` of the passage, on the floor or `aloft`."""
+        if aloft:
+            return self._swinging(share)
         if self.stays:
             return self._standing(share)
         swing = self.swing(share)
@@ -98,14 +120,24 @@ class LegPath:
         return Standing(place, rise, bend)
 
     def _swinging(self, swing: float) -> InAir:
-        thigh0, shank0 = _directions(self.model, self.start, self.side)
-        thigh1, shank1 = _directions(self.model, self.end, self.side)
+        thigh0, shank0 = _directions(self.model, self.lift or self.start, self.side)
+        thigh1, shank1 = _directions(self.model, self.touch or self.end, self.side)
         figure = self.start.target.figure
         hip = figure.hips[self.side]
         knee = hip + figure.thigh * _arc(thigh0, thigh1, swing)
         ankle = knee + figure.shank * _arc(shank0, shank1, swing)
         turnout = getattr(self.after, "turnout", getattr(self.before, "turnout", radians(60.0)))
-        return InAir(ankle, knee, turnout, passing=True)
+        return InAir(ankle, knee, turnout, foot=self._foot(swing))
+
+    def _foot(self, swing: float) -> Vector:
+        """Angles of the foot: from those of the pose before through pointed to those after."""
+        pointed = np.radians(POINTED_DEG)
+        pose, rolled = (
+            (self.lift or self.start, swing) if swing < 0.5 else (self.touch or self.end, 1 - swing)
+        )
+        joints = [self.model.joint(f"{self.side}_{j}").qposadr[0] for j in FOOT_JOINTS]
+        own = pose.qpos[joints]
+        return np.asarray(own + min(rolled / ROLL, 1.0) * (pointed - own))
 
 
 def _print(leg: LegTarget) -> Footprint | None:
@@ -123,9 +155,7 @@ def _bend(leg: LegTarget) -> float:
     return leg.knee_bend
 
 
-def _directions(
-    model: mujoco.MjModel, pose: KeyPose, side: Side
-) -> tuple[Vector, Vector]:
+def _directions(model: mujoco.MjModel, pose: KeyPose, side: Side) -> tuple[Vector, Vector]:
     """Unit directions of thigh and shank of a solved pose, in the pelvis' frame as written."""
     data = mujoco.MjData(model)
     data.qpos[:] = pose.qpos
@@ -140,7 +170,4 @@ def _arc(first: Vector, last: Vector, share: float) -> Vector:
     angle = acos(float(np.clip(first @ last, -1.0, 1.0)))
     if angle < 1e-6:
         return last
-    return np.asarray(
-        (sin((1 - share) * angle) * first + sin(share * angle) * last) / sin(angle)
-    )
-
+    return np.asarray((sin((1 - share) * angle) * first + sin(share * angle) * last) / sin(angle))

@@ -17,6 +17,10 @@ from enpointe.notation.frame import ArmSigns as ArmSigns
 from enpointe.notation.frame import Frame as Frame
 from enpointe.notation.frame import ResolvedFrame as ResolvedFrame
 from enpointe.notation.frame import ResolvedLeg as ResolvedLeg
+from enpointe.notation.json_form import score_from_json as score_from_json
+from enpointe.notation.json_form import score_schema as score_schema
+from enpointe.notation.json_form import score_to_json as score_to_json
+from enpointe.notation.macros import Vocabulary as Vocabulary
 from enpointe.notation.mirror import mirrored as mirrored
 from enpointe.notation.movement import Jump as Jump
 from enpointe.notation.movement import Limb as Limb
@@ -25,14 +29,15 @@ from enpointe.notation.movement import PathKind as PathKind
 from enpointe.notation.movement import PathMark as PathMark
 from enpointe.notation.movement import StepKind as StepKind
 from enpointe.notation.movement import Via as Via
-from enpointe.notation.parser import MAX_BYTES as MAX_BYTES
 from enpointe.notation.parser import VERSION as VERSION
 from enpointe.notation.parser import parse_score as parse_score
 from enpointe.notation.phrasing import Phrase as Phrase
 from enpointe.notation.phrasing import Repeat as Repeat
+from enpointe.notation.plain_text import MAX_BYTES as MAX_BYTES
 from enpointe.notation.score import TEMPO_RANGE as TEMPO_RANGE
 from enpointe.notation.score import Score as Score
 from enpointe.notation.shelf import load_score as load_score
+from enpointe.notation.shelf import load_vocabulary as load_vocabulary
 from enpointe.notation.shelf import shipped_scores as shipped_scores
 from enpointe.notation.signs import ArmsPosition as ArmsPosition
 from enpointe.notation.signs import Bend as Bend

@@ -7,17 +7,18 @@ and says it first.
 
 from __future__ import annotations
 
+import functools
+from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
 from enpointe.notation.frame import Frame
-from enpointe.notation.performed import pieces
 from enpointe.notation.phrasing import Phrase, Repeat
 from enpointe.notation.score import Score
 from enpointe.notation.signs import Bend, FloorContact, Location, Side
 
-__all__ = ["Fault", "excluded_by", "faults", "frame_faults", "written_parts"]
+__all__ = ["Fault", "excluded_by", "faults", "faults_between", "frame_faults", "written_parts"]
 
 FLOOR_LINE = 1.0
 
@@ -37,6 +38,7 @@ class Fault:
     at: Location | None
 
 
+@functools.cache
 def excluded_by(part: str) -> tuple[str, ...]:
     """The parts that a frame can't write together with a part.
 
@@ -96,6 +98,11 @@ def faults(score: Score) -> Iterator[Fault]:
         for fault in frame_faults(frame, before):
             yield Fault(f"frames[{index}]{fault.where}", fault.message, fault.at)
         before = frame
+    yield from faults_between(score)
+
+
+def faults_between(score: Score) -> Iterator[Fault]:
+    """What is wrong with a score whose frames are right."""
     yield from _repeat_faults(score)
     yield from _phrase_faults(score.phrases, score.repeats)
     yield from _jump_faults(score)
@@ -133,9 +140,8 @@ def _limb_faults(frame: Frame, side: Side) -> Iterator[Fault]:
             f"the {side} arm can't be straight and bent at the elbow in one frame",
             elbow.at,
         )
-    foot, knee, support = (
-        signs.get(side) for signs in (frame.foot_signs, frame.knees, frame.support)
-    )
+    foot, knee = frame.foot_signs.get(side), frame.knees.get(side)
+    support = frame.support.get(side)
     if support is None:
         return
     if foot is not None and foot.height != FLOOR_LINE:
@@ -161,13 +167,9 @@ def _limb_faults(frame: Frame, side: Side) -> Iterator[Fault]:
 def _arrival_faults(frame: Frame) -> Iterator[Fault]:
     for name, what in (("travel", frame.travel), ("turn", frame.turn), ("jump", frame.jump)):
         if what is not None:
-            yield Fault(
-                f".{name}", f"nothing comes before beat 0; write the {name} later", what.at
-            )
+            yield Fault(f".{name}", f"nothing comes before beat 0; write the {name} later", what.at)
     for limb, path in frame.paths.items():
-        yield Fault(
-            f".paths.{limb}", "nothing comes before beat 0; write the path later", path.at
-        )
+        yield Fault(f".paths.{limb}", "nothing comes before beat 0; write the path later", path.at)
     for side, line in frame.locomotion.items():
         yield Fault(
             f".locomotion.{side}", "nothing comes before beat 0; write the step later", line.at
@@ -199,17 +201,17 @@ def _repeat_faults(score: Score) -> Iterator[Fault]:
         if repeat.start < free:
             yield Fault(where, "repeats stand one after another, none over another", repeat.at)
         if last > end:
-            yield Fault(
-                where, f"the score ends at beat {end}, before count {last}", repeat.at
-            )
+            yield Fault(where, f"the score ends at beat {end}, before count {last}", repeat.at)
         free = Fraction(last)
 
 
 def _phrase_faults(phrases: Sequence[Phrase], repeats: Sequence[Repeat]) -> Iterator[Fault]:
     free = Fraction(0)
-    cuts = {
-        cut for piece in pieces(repeats) for cut in (piece.start, piece.end) if cut is not None
-    }
+    cuts = sorted(
+        {repeat.start for repeat in repeats}
+        | {repeat.end for repeat in repeats}
+        | {Fraction(repeat.endings[0][0] - 1) for repeat in repeats if repeat.endings}
+    )
     for index, phrase in enumerate(phrases):
         where = f"phrases[{index}]"
         if not 1 <= phrase.first <= phrase.last:
@@ -218,7 +220,7 @@ def _phrase_faults(phrases: Sequence[Phrase], repeats: Sequence[Repeat]) -> Iter
             yield Fault(where, "phrases stand in order, none over another", phrase.at)
         if phrase.effort is None and phrase.tempo_end is None and phrase.name is None:
             yield Fault(where, "the phrase says nothing; give it a quality or a name", phrase.at)
-        if any(phrase.start < cut < phrase.end for cut in cuts):
+        if _cut(phrase.start, phrase.end, cuts):
             yield Fault(
                 where,
                 "a repeat or an ending begins or ends within this phrase; "
@@ -228,16 +230,24 @@ def _phrase_faults(phrases: Sequence[Phrase], repeats: Sequence[Repeat]) -> Iter
         free = phrase.end
 
 
+def _cut(start: Fraction, end: Fraction, cuts: Sequence[Fraction]) -> bool:
+    """Whether any of the cuts, in order, is between start and end."""
+    index = bisect_right(cuts, start)
+    return index < len(cuts) and cuts[index] < end
+
+
 def _jump_faults(score: Score) -> Iterator[Fault]:
     landed = Fraction(0)
-    cuts = [piece.start for piece in pieces(score.repeats)]
+    cuts = sorted({cut for repeat in score.repeats for cut in (repeat.start, repeat.end)})
     for index, frame in enumerate(score.frames):
         if frame.jump is None:
             continue
         where = f"frames[{index}].jump"
         if frame.jump.off < landed:
-            yield Fault(where, "this jump leaves the floor before the last one lands", frame.jump.at)
-        if any(frame.jump.off < cut < frame.beat for cut in cuts):
+            yield Fault(
+                where, "this jump leaves the floor before the last one lands", frame.jump.at
+            )
+        if _cut(frame.jump.off, frame.beat, cuts):
             yield Fault(
                 where,
                 "a repeat begins or ends during this jump; let it leave the floor after that",

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
 from fractions import Fraction
-from typing import Any
 
-
-from enpointe.notation.check import excluded_by, frame_faults
+from enpointe.notation.check import excluded_by
 from enpointe.notation.frame import Frame
 from enpointe.notation.movement import Jump, Limb, Locomotion, PathMark
 from enpointe.notation.reading import Reader
@@ -81,32 +79,14 @@ class Draft:
                 )
         self._claims[part] = at
 
-    def frame(self, beat: Fraction, at: Location, before: Frame | None) -> Frame:
-        """The frame of all that was read.
+    def frame(self, beat: Fraction, at: Location) -> Frame:
+        """The frame of all that was read, at a beat that stands in a line."""
+        return Frame(beat=beat, at=at, **{name: getattr(self, name) for name in _PARTS})
 
-        Args:
-            beat: When.
-            at: The line of its beat.
-            before: The frame before it; None for the first.
 
-        Raises:
-            ScoreError: Its parts contradict each other.
-        """
-        frame = Frame(beat=beat, at=at, **self._parts())
-        for fault in frame_faults(frame, before):
-            raise self.reader.fail(fault.message, fault.at or at)
-        return frame
-
-    def _parts(self) -> dict[str, Any]:
-        return {
-            each.name: getattr(self, each.name)
-            for each in fields(Frame)
-            if each.name not in ("beat", "at")
-        }
+_PARTS = tuple(each.name for each in fields(Frame) if each.name not in ("beat", "at"))
 
 
 def _spoken(part: str) -> str:
     """The part as scores write it: how a leg stands is written on its leg's line."""
     return part.replace("support", "leg")
-
-

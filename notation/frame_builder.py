@@ -7,16 +7,17 @@ from fractions import Fraction
 from lark import Token, Tree
 
 from enpointe.notation.amounts import DEFAULT_DEGREES, MAX_DEGREES
+from enpointe.notation.check import frame_faults
 from enpointe.notation.draft import Draft
 from enpointe.notation.frame import Frame
 from enpointe.notation.limb_lines import read_leg, read_limb, read_path, read_stance
 from enpointe.notation.macros import Vocabulary, laid_under
 from enpointe.notation.mirror import mirrored
 from enpointe.notation.movement import Limb
+from enpointe.notation.numerals import number
 from enpointe.notation.reading import (
     Reader,
     location,
-    number,
     side_of,
     token_of,
     tokens_of,
@@ -84,8 +85,12 @@ class FrameBuilder:
         Raises:
             ScoreError: Its parts contradict each other.
         """
-        frame = self._draft.frame(beat, at, before)
-        return frame if self._under is None else laid_under(self._under, frame)
+        frame = self._draft.frame(beat, at)
+        if self._under is not None:
+            frame = laid_under(self._under, frame)
+        for fault in frame_faults(frame, before):
+            raise self._reader.fail(fault.message, fault.at or at)
+        return frame
 
     def _unknown(self, text: str, part: Part, at: Token) -> Exception:
         close = (*self._vocabulary.nearest(text, part), *nearest(text, part))[:3]

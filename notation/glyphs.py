@@ -176,20 +176,20 @@ GLYPHS: Mapping[str, Glyph] = {
     # Locomotion: from the floor line of one frame to that of the next
     "locomotion steps": Glyph(
         "the foot steps: an arc over the floor line",
-        fill="M0 -.1C.25 -.62 .75 -.62 1 -.1C.75 -.5 .25 -.5 0 -.1Z",
+        fill="M0 -.16C.25 -.66 .75 -.66 1 -.16C.75 -.54 .25 -.54 0 -.16Z",
         along="across",
         source=_LOCOMOTION,
     ),
     "locomotion slides": Glyph(
-        "the foot slides: a line under the floor line",
-        "M0 .12L1 .12",
+        "the foot slides: a straight line under the feet",
+        "M0 .76L1 .76",
         weight=0.09,
         along="across",
         source=_LOCOMOTION,
     ),
     "locomotion jumps": Glyph(
         "the dancer jumps: an arc below the stave, from take-off to landing",
-        fill="M0 .8C.22 1.55 .78 1.55 1 .8C.78 1.4 .22 1.4 0 .8Z",
+        fill="M0 .9C.22 1.65 .78 1.65 1 .9C.78 1.5 .22 1.5 0 .9Z",
         along="across",
         source=_LOCOMOTION,
     ),

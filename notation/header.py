@@ -12,12 +12,11 @@ from fractions import Fraction
 from lark import Token, Tree
 
 from enpointe.notation.amounts import MAX_TIMES, TEMPO_FACTORS
+from enpointe.notation.numerals import beat_number, number
 from enpointe.notation.phrasing import EFFORT_FACTORS, EFFORTS, Phrase, Repeat, effort_text
 from enpointe.notation.reading import (
     Reader,
-    beat_number,
     location,
-    number,
     tokens_of,
     trees_of,
 )
@@ -202,9 +201,7 @@ def read_phrase(reader: Reader, node: Tree[Token]) -> Phrase:
     )
 
 
-def _effort(
-    reader: Reader, words: Sequence[Token], factors: Sequence[Tree[Token]]
-) -> str | None:
+def _effort(reader: Reader, words: Sequence[Token], factors: Sequence[Tree[Token]]) -> str | None:
     if words:
         return reader.choice(words[0], {word: word for word in EFFORTS}, "a quality", words[0])
     values: dict[str, float] = {}

@@ -7,19 +7,28 @@ reading is as strict as the schema and refuses contradictions besides.
 
 from __future__ import annotations
 
+import json
 from fractions import Fraction
+from importlib import resources
 from typing import Any
 
 from enpointe.notation.frame import Frame
 from enpointe.notation.json_reader import score_from_json
+from enpointe.notation.numerals import format_beat
 from enpointe.notation.phrasing import Phrase, Repeat
 from enpointe.notation.score import Score
 from enpointe.notation.signs import Orientation, Sign
-from enpointe.notation.writer import format_beat
 
-__all__ = ["score_from_json", "score_to_json"]
+__all__ = ["score_from_json", "score_schema", "score_to_json"]
 
 Json = dict[str, Any]
+
+
+def score_schema() -> Json:
+    """The JSON Schema (draft 2020-12) of a score's JSON form."""
+    file = resources.files("enpointe.notation").joinpath("score.schema.json")
+    schema: Json = json.loads(file.read_text("utf-8"))
+    return schema
 
 
 def score_to_json(score: Score) -> Json:
@@ -121,7 +130,7 @@ def _sign(sign: Sign) -> Json:
 
 
 def _orientation(part: Orientation | None) -> Json | None:
-    return part and {"turn": part.turn, "tilt": part.tilt, "bend": part.bend}
+    return None if part is None else {"turn": part.turn, "tilt": part.tilt, "bend": part.bend}
 
 
 def _written(**values: Any) -> Json:

@@ -9,7 +9,7 @@ from fractions import Fraction
 from typing import Any, TypeVar
 
 from enpointe.errors import ScoreError
-from enpointe.notation.reading import beat_number
+from enpointe.notation.numerals import beat_number
 from enpointe.notation.signs import Side
 from enpointe.notation.wording import quoted
 

@@ -10,9 +10,9 @@ from lark import Token, Tree
 from enpointe.notation.amounts import HEIGHTS, WIDTHS
 from enpointe.notation.draft import Draft
 from enpointe.notation.movement import Limb, Locomotion, PathKind, PathMark, StepKind, Via
+from enpointe.notation.numerals import number
 from enpointe.notation.reading import (
     location,
-    number,
     side_of,
     tokens_of,
     trees_of,
@@ -75,7 +75,7 @@ def read_limb(draft: Draft, line: Tree[Token]) -> None:
     Raises:
         ScoreError: It is wrong in itself or contradicts an earlier one.
     """
-    keyword, limb, *marks = tokens_of(line)
+    keyword, limb = tokens_of(line)[:2]
     side, kind = side_of(keyword), str(limb.lower())
     items = _Items()
     for child in line.children[2:]:
@@ -176,7 +176,7 @@ def _read_item(draft: Draft, item: Tree[Token] | Token, who: str, items: _Items)
         known = {"hand": ("straight", "on hip"), "foot": (*_FLOOR, *_STEPS)}.get(kind, ())
         raise draft.reader.fail(
             f"'{words_of(item)[:60]}' is not part of the sign of a {kind}; "
-            f"write {quoted(['... wide', '... high', *Depth, *known])}",
+            f"write a number and 'wide' or 'high', {quoted([*Depth, *known])}",
             token,
         )
 
@@ -273,9 +273,7 @@ def _leg_position(draft: Draft, node: Tree[Token]) -> LegPosition:
     if found is None:
         close = nearest(text, "leg")
         hint = f"did you mean {either(close)}?" if close else "see `enpointe pose --list`"
-        raise draft.reader.fail(
-            f"'{text[:60]}' is not a position of the leg; {hint}", tokens[0]
-        )
+        raise draft.reader.fail(f"'{text[:60]}' is not a position of the leg; {hint}", tokens[0])
     entry, direction = found
     direction = _direction(draft, entry, direction, tokens[0])
     degrees = entry.degrees[1] if entry.degrees else None

@@ -12,7 +12,7 @@ from fractions import Fraction
 
 from lark import Token, Tree
 
-from enpointe.notation.check import faults
+from enpointe.notation.check import faults_between
 from enpointe.notation.frame import Frame
 from enpointe.notation.frame_builder import FrameBuilder
 from enpointe.notation.header import Header, read_phrase, read_repeat
@@ -117,7 +117,7 @@ class _ScoreReader:
                 )
             frames.append(self._frame(score, node, frames[-1] if frames else None))
         score = replace(score, frames=tuple(frames))
-        for fault in faults(score):
+        for fault in faults_between(score):
             raise self._reader.fail(fault.message, fault.at or Location(1, 1))
         score.resolved()
         return score
@@ -126,7 +126,9 @@ class _ScoreReader:
         tokens = tokens_of(node)
         beat, when = self._beat(score, tokens), tokens[-1]
         if before is None and beat != 0:
-            raise self._reader.fail("the first frame stands at beat 0, the pose to start from", when)
+            raise self._reader.fail(
+                "the first frame stands at beat 0, the pose to start from", when
+            )
         if before is not None and beat == before.beat:
             raise self._reader.fail(
                 f"beat {when} was already written on line {before.at.line}", when

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -33,9 +34,10 @@ class Piece:
     later: int
     mirror: bool = False
 
-    def holds(self, beat: Fraction) -> bool:
-        """Whether a written beat is in it."""
-        return self.start < beat and (self.end is None or beat <= self.end)
+    def part(self, beats: Sequence[Fraction]) -> slice:
+        """Which of these written beats, in order, are in it."""
+        stop = len(beats) if self.end is None else bisect_right(beats, self.end)
+        return slice(bisect_right(beats, self.start), stop)
 
 
 def performed(score: Score) -> Score:
@@ -43,20 +45,18 @@ def performed(score: Score) -> Score:
     if not score.repeats:
         return score
     danced = pieces(score.repeats)
+    beats = [frame.beat for frame in score.frames]
+    ends = [phrase.end for phrase in score.phrases]
     return replace(
         score,
         frames=tuple(
-            _moved(frame, piece)
-            for piece in danced
-            for frame in score.frames
-            if piece.holds(frame.beat)
+            _moved(frame, piece) for piece in danced for frame in score.frames[piece.part(beats)]
         ),
         repeats=(),
         phrases=tuple(
             replace(phrase, first=phrase.first + piece.later, last=phrase.last + piece.later)
             for piece in danced
-            for phrase in score.phrases
-            if piece.holds(phrase.end)
+            for phrase in score.phrases[piece.part(ends)]
         ),
     )
 

@@ -12,9 +12,10 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from math import log1p
 
+from enpointe.notation.numerals import format_number, number
 from enpointe.notation.signs import Location
 
-__all__ = ["EFFORTS", "EFFORT_FACTORS", "Phrase", "Repeat", "effort_text"]
+__all__ = ["EFFORTS", "EFFORT_FACTORS", "Phrase", "Repeat", "effort_factors", "effort_text"]
 
 EFFORTS = ("natural", "happy", "sad", "angry", "afraid")
 """Qualities by name: those that Neagle (2005 §5.5) measured."""
@@ -31,12 +32,23 @@ sustained, weight from heavy to light, space from indirect to direct."""
 def effort_text(factors: Mapping[str, float]) -> str:
     """Factors as a phrase keeps them: "time=-3.5,weight=0.41,space=1", those left out unchanged."""
     return ",".join(
-        f"{name}={_number(factors[name])}" for name in EFFORT_FACTORS if name in factors
+        f"{name}={format_number(factors[name])}" for name in EFFORT_FACTORS if name in factors
     )
 
 
-def _number(value: float) -> str:
-    return str(int(value)) if value == int(value) else repr(value)
+def effort_factors(text: str) -> dict[str, float] | None:
+    """The factors of an effort's text; None if it is none, or a number is out of range."""
+    factors: dict[str, float] = {}
+    for part in text.split(","):
+        name, _, digits = part.partition("=")
+        value = number(digits)
+        if name in factors or name not in EFFORT_FACTORS or value is None:
+            return None
+        low, high = EFFORT_FACTORS[name]
+        if not low <= value <= high:
+            return None
+        factors[name] = value
+    return factors
 
 
 @dataclass(frozen=True, slots=True)

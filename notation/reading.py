@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-import re
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from typing import TypeVar
@@ -11,53 +9,22 @@ from typing import TypeVar
 from lark import Token, Tree
 
 from enpointe.errors import ScoreError
+from enpointe.notation.numerals import MAX_BEAT, MAX_DENOMINATOR, beat_number, number
 from enpointe.notation.signs import Location, Side
 from enpointe.notation.spelling import close_to, fold
 from enpointe.notation.wording import quoted
 
 __all__ = [
-    "MAX_BEAT",
-    "MAX_DENOMINATOR",
     "Reader",
-    "beat_number",
     "location",
-    "number",
     "side_of",
     "token_of",
     "tokens_of",
+    "trees_of",
     "words_of",
 ]
 
-MAX_BEAT = 100_000
-MAX_DENOMINATOR = 96
-
 Value = TypeVar("Value")
-
-_NUMBER = re.compile(r"[+-]?(?:[0-9]{1,9}(?:\.[0-9]{0,20})?|\.[0-9]{1,20})(?:[eE][+-]?[0-9]{1,3})?")
-_WHOLE = re.compile(r"[0-9]{1,6}(\.[0-9]{1,6})?")
-_RATIO = re.compile(r"[0-9]{1,6}/[0-9]{1,6}")
-
-
-def number(text: str) -> float | None:
-    """The finite number that the text is, or None."""
-    text = text.replace("\u2212", "-")
-    if not _NUMBER.fullmatch(text):
-        return None
-    value = float(text)
-    return value if math.isfinite(value) else None
-
-
-def beat_number(text: str) -> Fraction | None:
-    """The beat that the text is, such as "2", "1+1/2" or "2.5"; None if it is none."""
-    total = Fraction(0)
-    for part in text.replace("\t", " ").split("+"):
-        part = part.strip()
-        whole = _WHOLE.fullmatch(part)
-        ratio = _RATIO.fullmatch(part) and int(part.split("/")[1]) > 0
-        if not (whole or ratio):
-            return None
-        total += Fraction(part)
-    return total if total <= MAX_BEAT and total.denominator <= MAX_DENOMINATOR else None
 
 
 def tokens_of(node: Tree[Token]) -> list[Token]:

@@ -17,8 +17,10 @@ from enpointe.notation.performed import performed
 from enpointe.notation.phrasing import Phrase, Repeat
 from enpointe.notation.resolving import resolve
 
-__all__ = ["TEMPO_RANGE", "Score"]
+__all__ = ["LONGEST", "TEMPO_RANGE", "Score"]
 
+LONGEST = 3600.0
+"""Longest dance, s: an hour, longer than any act; a misprinted beat is far more likely."""
 TEMPO_RANGE = (1.0, 250.0)
 """Slowest and fastest pulse, in beats a minute (the range of Neagle's own system, 2005)."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import functools
 import unicodedata
 from collections.abc import Iterable, Mapping
 from typing import TypeVar
@@ -14,6 +15,7 @@ Value = TypeVar("Value")
 _ORDINALS = {"1st": "first", "2nd": "second", "3rd": "third", "4th": "fourth", "5th": "fifth"}
 
 
+@functools.lru_cache(maxsize=1024)
 def fold(name: str) -> str:
     """The name without case, accents, hyphens and spare blanks, ordinals spelt out."""
     bare = "".join(

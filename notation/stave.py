@@ -169,9 +169,12 @@ def _header(score: Score, measure: float, top: float) -> Iterator[Mark]:
     """Title in the middle, tempo at the left, the school at the right."""
     title = score.title.strip()
     size = _TITLE if text_width(title, _TITLE) < measure else _SMALLER_TITLE
-    letters = max(int(measure / (0.6 * size)), 8)
+    rows = [title]
+    if text_width(title, size) > measure:
+        letters = max(int(measure / (0.6 * size)), 8)
+        rows = textwrap.wrap(title, letters, max_lines=_TITLE_LINES, placeholder=" …") or rows
     y = top
-    for row in textwrap.wrap(title, letters, max_lines=_TITLE_LINES, placeholder=" …") or [title]:
+    for row in rows:
         y += 1.15 * size
         yield words(row, measure / 2, y, size, anchor="middle", fit=measure, name="title")
     y += 2.5
@@ -223,7 +226,7 @@ def _document(
     width, height = px(size[0]), px(size[1])
     title = text(score.title)
     parts = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" class="stave" role="group" aria-label="{title}" '
+        f'<svg xmlns="http://www.w3.org/2000/svg" class="stave" role="img" aria-label="{title}" '
         f'width="{printed[0]}" height="{printed[1]}" viewBox="0 0 {width} {height}" '
         f'font-family="{SERIF}" fill="{INK}">',
         f"<title>{title}</title>",

@@ -147,7 +147,7 @@ def _hands(frame: Frame, resolved: ResolvedFrame) -> list[_Group]:
             continue
         sign = resolved.arms[side].wrist
         x, y = _place(sign, side)
-        marks = [glyph(extremity(sign.depth), x, y)]
+        marks = [glyph(extremity(sign.depth), x, y, limb=f"{side} hand")]
         if sign.width < 0:
             marks.append(glyph(f"crossed {side}", x, y))
         if sign.straight:
@@ -173,7 +173,7 @@ def _feet(frame: Frame, resolved: ResolvedFrame) -> Iterator[_Group]:
         leg = resolved.legs[side]
         sign, _ = _foot_sign(leg, side, _alone(resolved, side))
         x, y = _foot_place(leg, side, _alone(resolved, side))
-        marks = [glyph(extremity(sign.depth), x, y)]
+        marks = [glyph(extremity(sign.depth), x, y, limb=f"{side} foot")]
         if leg.support is not None and leg.support.floor is FloorContact.TOUCH:
             ring = glyph("floor touching", x, 0.0)
             marks.append(ring.moved(0.0, FLOOR + LINE / 2 - ring.box.top + 0.02))
@@ -194,7 +194,10 @@ def _bends(frame: Frame, resolved: ResolvedFrame) -> Iterator[_Group]:
         moved = side in frame.hands or side in frame.elbows or side in frame.contacts
         if elbow is not None and (frame.arms is not None or moved):
             x, y = _place(elbow, side)
-            yield _Group((glyph(joint(elbow.depth), x, y),), _ways(side, elbow.width < 0))
+            yield _Group(
+                (glyph(joint(elbow.depth), x, y, limb=f"{side} elbow"),),
+                _ways(side, elbow.width < 0),
+            )
     for side in Side:
         leg = resolved.legs[side]
         moved = (
@@ -206,11 +209,14 @@ def _bends(frame: Frame, resolved: ResolvedFrame) -> Iterator[_Group]:
         )
         if moved and leg.knee is not None:
             x, y = _place(leg.knee, side)
-            yield _Group((glyph(joint(leg.knee.depth), x, y),), _ways(side, leg.knee.width < 0))
+            yield _Group(
+                (glyph(joint(leg.knee.depth), x, y, limb=f"{side} knee"),),
+                _ways(side, leg.knee.width < 0),
+            )
         elif moved and leg.support is not None and leg.support.bend in _KNEES:
             out, y = _KNEES[leg.support.bend]
             x = spot(Limb.of(side, "foot"), resolved)[0] + _outward(side) * out
-            yield _Group((glyph("bend level", x, y),), _ways(side, False))
+            yield _Group((glyph("bend level", x, y, limb=f"{side} knee"),), _ways(side, False))
 
 
 def _ways(side: Side, across: bool) -> tuple[float, ...]:

@@ -88,6 +88,7 @@ class Mark:
         size: Size of the letters.
         style: Further attributes of the letters.
         anchor: "start", "middle" or "end".
+        limb: What it is the sign of, such as "right foot"; empty for all that is no limb's.
         fit: Width that the letters are squeezed into; None leaves them as they are.
     """
 
@@ -102,6 +103,7 @@ class Mark:
     style: str = ""
     anchor: str = "start"
     fit: float | None = None
+    limb: str = ""
 
     def moved(self, dx: float, dy: float) -> Mark:
         """The same mark elsewhere."""
@@ -161,7 +163,7 @@ def _extent(stroke: Path, fill: Path, weight: float) -> Box:
     )
 
 
-def glyph(name: str, x: float, y: float, angle: float = 0.0) -> Mark:
+def glyph(name: str, x: float, y: float, angle: float = 0.0, limb: str = "") -> Mark:
     """A sign of the table with its origin at (x, y), turned to the left by `angle` degrees."""
     entry = GLYPHS[name]
     if entry.text:
@@ -171,7 +173,8 @@ def glyph(name: str, x: float, y: float, angle: float = 0.0) -> Mark:
     def put(point: Point) -> Point:
         return x + c * point[0] + s * point[1], y - s * point[0] + c * point[1]
 
-    return _drawn(name, _mapped(_path(entry.stroke), put), _mapped(_path(entry.fill), put))
+    mark = _drawn(name, _mapped(_path(entry.stroke), put), _mapped(_path(entry.fill), put))
+    return replace(mark, limb=limb)
 
 
 def between(name: str, start: Point, end: Point, flip: bool = False) -> Mark:
@@ -263,6 +266,8 @@ def svg(marks: Iterable[Mark]) -> Iterator[str]:
     """The elements of the marks."""
     for mark in marks:
         kind = f'class="{"sign " if mark.name in GLYPHS else ""}{mark.name.replace(" ", "-")}"'
+        if mark.limb:
+            kind += f' data-limb="{mark.limb}"'
         if mark.letters:
             fit = (
                 f' textLength="{px(mark.fit)}" lengthAdjust="spacingAndGlyphs"' if mark.fit else ""

@@ -42,6 +42,7 @@ LEAST_STAVE = 30.0
 """Length of a stave that stands alone, at least: room for a title."""
 
 _PAD = 0.42
+_STAGE_PAD = 0.25
 _LEAST_HALF = 0.95
 _PULSE = 4.1
 _POWER = 0.6
@@ -173,8 +174,11 @@ def _cells(score: Score) -> Iterator[Cell]:
         signs = frame_marks(writes, resolved, before)
         count = count_marks(score, frame.beat, COUNT_LINE)
         stage = stage_marks(writes)
-        box = union(mark.box for mark in (*signs, *count, *stage))
+        box = union(mark.box for mark in (*signs, *count))
         left, right = max(-box.left, _LEAST_HALF), max(box.right, _LEAST_HALF)
+        if stage:
+            row = union(mark.box for mark in stage)
+            left, right = max(left, _STAGE_PAD - row.left), max(right, _STAGE_PAD + row.right)
         yield Cell(index, frame, signs, count, stage, left, right)
         before = resolved
 

@@ -203,18 +203,26 @@ def _locomotion(
     for side, step in now.locomotion.items():
         if step.kind is StepKind.JUMP and now.jump is not None:
             continue
-        here = x + _foot_x(side, now)
-        there = 0.35 if start is None or before is None else start + _foot_x(side, before)
+        here = x + _foot_x(side, cell, now)
+        there = (
+            0.35
+            if start is None or before is None
+            else start + _foot_x(side, placed[i - 1][0], before)
+        )
         yield locomotion_line(step.kind, there, here, FLOOR)
     following = resolved[cell.index + 1] if cell.index + 1 < len(resolved) else None
     if i + 1 == len(placed) and following is not None:
         for side, step in following.locomotion.items():
-            here = x + _foot_x(side, now)
+            here = x + _foot_x(side, cell, now)
             yield locomotion_line(step.kind, here, stave.width - 0.3, FLOOR)
 
 
-def _foot_x(side: Side, frame: ResolvedFrame) -> float:
-    return spot(Limb.of(side, "foot"), frame)[0]
+def _foot_x(side: Side, cell: Cell, frame: ResolvedFrame) -> float:
+    """How far from the centre line a foot's sign is drawn, or would be."""
+    limb = Limb.of(side, "foot")
+    boxes = (mark.box for mark in cell.signs if mark.limb == limb)
+    drawn = next(((box.left + box.right) / 2 for box in boxes), None)
+    return spot(limb, frame)[0] if drawn is None else drawn
 
 
 def _x_of(beat: float, placed: Placed, stave: Line) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from enpointe.notation.movement import Limb, PathKind, PathMark
+from enpointe.notation.movement import Limb, PathKind, PathMark, StepKind
 from enpointe.notation.stave_ink import Mark, Point, between, glyph
 
 __all__ = ["locomotion_line", "movement_line"]
@@ -17,6 +17,7 @@ _START = 0.08
 _SHORTEST = 0.25
 _HIPS_AND_SHOULDERS = {"hand": 1.0, "foot": 2.0}
 _NARROWEST = 0.3
+_APART = 0.1
 
 
 def movement_line(limb: Limb, path: PathMark, old: Point, new: Point) -> Iterator[Mark]:
@@ -68,6 +69,13 @@ def locomotion_line(kind: str, start: float, end: float, floor: float) -> Mark:
         end: x of the foot that is reached.
         floor: y of the floor line.
     """
+    if kind != StepKind.JUMP:
+        # A step is clear of the signs that it links, a slide of the slide that follows.
+        stop = _STOP if kind == StepKind.STEP else _APART
+        way = 1.0 if end > start else -1.0
+        start, end = start + way * stop, end - way * stop
+        if (end - start) * way < 0:
+            start = end = (start + end) / 2
     if abs(end - start) < _NARROWEST:
         middle = (start + end) / 2
         start, end = middle - _NARROWEST / 2, middle + _NARROWEST / 2

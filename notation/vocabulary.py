@@ -126,13 +126,15 @@ def nearest(name: str, part: Part, count: int = 3) -> tuple[str, ...]:
     """The known names most like a name that isn't known, best first; empty when none is like it."""
     if part == "leg":
         legs = close_to(name, _LEGS_BY_NAME, count)
-        return tuple(f"{entry.name} {direction or entry.directions[0]}" for entry, direction in legs)
-    table: Mapping[str, ArmsEntry | FeetEntry | PoseEntry] = {
+        return tuple(
+            f"{entry.name} {direction or entry.directions[0]}" for entry, direction in legs
+        )
+    tables: Mapping[str, Mapping[str, ArmsEntry | FeetEntry | PoseEntry]] = {
         "arms": _ARMS_BY_NAME,
         "feet": _FEET_BY_NAME,
         "pose": _POSES_BY_NAME,
-    }[part]
-    return tuple(entry.name for entry in close_to(name, table, count))
+    }
+    return tuple(entry.name for entry in close_to(name, tables[part], count))
 
 
 def arm_signs(position: ArmsPosition) -> dict[Side, Sign]:

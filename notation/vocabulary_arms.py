@@ -21,7 +21,15 @@ from dataclasses import dataclass
 
 from enpointe.notation.signs import BodyPlace, Depth, Sign
 
-__all__ = ["ARMS", "ARM_PLACES", "BODY_PLACES", "CONTACT_PLACES", "ArmPlace", "ArmsEntry", "ContactPlace"]
+__all__ = [
+    "ARMS",
+    "ARM_PLACES",
+    "BODY_PLACES",
+    "CONTACT_PLACES",
+    "ArmPlace",
+    "ArmsEntry",
+    "ContactPlace",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,7 +193,14 @@ ARMS: tuple[ArmsEntry, ...] = (
         "one arm overhead, the other low at the side, as in croisé and effacé",
         "balletclassroom 2012, Cecchetti body positions (low second)",
     ),
-    ArmsEntry("fifth en bas", "bas", "bas", "both arms low", _THESIS, ("bras bas", "RAD bras bas", "Vaganova preparatory")),
+    ArmsEntry(
+        "fifth en bas",
+        "bas",
+        "bas",
+        "both arms low",
+        _THESIS,
+        ("bras bas", "RAD bras bas", "Vaganova preparatory"),
+    ),
     ArmsEntry(
         "fifth en avant",
         "avant",
@@ -194,7 +209,14 @@ ARMS: tuple[ArmsEntry, ...] = (
         _THESIS,
         ("RAD first", "French first", "Vaganova first", "gateway"),
     ),
-    ArmsEntry("fifth en haut", "haut", "haut", "both arms overhead", _THESIS, ("en couronne", "couronne", "RAD fifth", "French fifth", "Vaganova third")),
+    ArmsEntry(
+        "fifth en haut",
+        "haut",
+        "haut",
+        "both arms overhead",
+        _THESIS,
+        ("en couronne", "couronne", "RAD fifth", "French fifth", "Vaganova third"),
+    ),
     ArmsEntry(
         "first arabesque",
         "arabesque eye level",

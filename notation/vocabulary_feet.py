@@ -9,6 +9,7 @@ from enpointe.notation.signs import Bend, FloorContact
 
 __all__ = ["BENDS", "FEET", "FLOOR", "FeetEntry"]
 
+
 @dataclass(frozen=True, slots=True)
 class FeetEntry:
     """A named position of the feet on the floor.
@@ -41,9 +42,24 @@ _THESIS = "Neagle 2005 §4.2.2"
 
 FEET: tuple[FeetEntry, ...] = (
     FeetEntry("first", 0.05, False, "heels together, toes turned out", _THESIS),
-    FeetEntry("second", 0.18, False, "heels apart under the shoulders", _THESIS, ("seconde", "à la seconde")),
+    FeetEntry(
+        "second",
+        0.18,
+        False,
+        "heels apart under the shoulders",
+        _THESIS,
+        ("seconde", "à la seconde"),
+    ),
     FeetEntry("third", 0.04, True, "front heel at the middle of the back foot", _THESIS),
-    FeetEntry("fourth", 0.06, True, "one foot in front, a foot's length apart", _THESIS, ("quatrième",), 0.10),
+    FeetEntry(
+        "fourth",
+        0.06,
+        True,
+        "one foot in front, a foot's length apart",
+        _THESIS,
+        ("quatrième",),
+        0.10,
+    ),
     FeetEntry("fifth", 0.0, True, "front heel at the big-toe joint of the back foot", _THESIS),
 )
 

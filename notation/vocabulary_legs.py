@@ -1,8 +1,9 @@
 """Named positions of the working leg, each a macro over the signs of ankle and knee.
 
 The figures are those of a dancer of 1.68 m (all in metres): hip .850 above the floor and .083 from
-the centre line, knee .493 above the floor, shoulder 1.331; thigh .357, shank .419, pointed foot .190
-beyond the ankle. No source prints them; what the sources say in words stands with each position.
+the centre line, knee .493, shoulder 1.331 and crown 1.680 above the floor; thigh .357, shank .419,
+pointed foot .190 beyond the ankle. No source prints them; what the sources say in words stands with
+each position.
 
 A leg goes out to second in the plane of the body, as the perfectly turned-out leg does: a knee sign
 of a bent leg is level, and the foot in front of it, level with it or behind. A body turned out less
@@ -11,6 +12,7 @@ brings it forward. In front and behind, the foot finds the centre line.
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import cos, radians, sin
@@ -75,6 +77,13 @@ LEGS: tuple[LegEntry, ...] = (
         ("RAD glissé", "glissé", "Vaganova jeté"),
     ),
     LegEntry(
+        "pointed",
+        _ALL,
+        "straight down off the floor, the foot pointed, as in the air of a jump: in second under "
+        "its own hip, in front or behind as in the fifth",
+        "Grant, sauté and soubresaut; the name is ours",
+    ),
+    LegEntry(
         "raised",
         _ALL,
         "straight, at its height in degrees: 45 demi-hauteur, 90 à la hauteur, above extended",
@@ -127,7 +136,8 @@ DIRECTIONS: Mapping[Direction, tuple[str, ...]] = {
 }
 """Words for the three directions; the first is the one that scores are written with."""
 
-_HIP, _KNEE, _SHOULDER = 0.850, 0.493, 1.331
+_LINES = (0.0, 0.493, 0.850, 1.331, 1.680)
+_HIP = _LINES[2]
 _HIP_ASIDE = 0.083
 _THIGH, _SHANK = 0.357, 0.419
 _LEG = _THIGH + _SHANK
@@ -136,12 +146,17 @@ _REACH = _HIP_ASIDE + _LEG
 _DEPTH = {_DEVANT: Depth.FRONT, _SECONDE: Depth.LEVEL, _DERRIERE: Depth.BEHIND}
 _DEGAGE = 35.0
 
+# Pointed: straight down, .776 below the hip; crossed in the fifth, .083 aside and .050 ahead too.
+#
 # The thigh at height h and the toe at a given place leave a triangle of thigh (.357), shank with
 # pointed foot (.609) and hip-to-toe, the thigh in the plane of the body. Retiré: the toe at the
 # height of the knee (.493), .033 beyond the centre line, where the inside of the supporting knee
 # is, or in front of and behind it (.060 beyond, .060 ahead). Cou-de-pied: the toe at .120, .060
 # beyond and .070 ahead. The ankle is .190/.609 of the way back to the knee.
-_BENT = {
+_FIXED = {
+    ("pointed", _DEVANT): (Sign(0.0, 1.162, Depth.FRONT), None),
+    ("pointed", _SECONDE): (Sign(0.097, 1.152, Depth.LEVEL), None),
+    ("pointed", _DERRIERE): (Sign(0.0, 1.162, Depth.BEHIND), None),
     ("retiré", _DEVANT): (Sign(0.112, 2.299, Depth.FRONT), Sign(0.512, 2.959, Depth.LEVEL)),
     ("retiré", _SECONDE): (Sign(0.133, 2.336, Depth.LEVEL), Sign(0.511, 3.057, Depth.LEVEL)),
     ("retiré", _DERRIERE): (Sign(0.112, 2.299, Depth.BEHIND), Sign(0.512, 2.959, Depth.LEVEL)),
@@ -173,8 +188,8 @@ def expand_leg(position: LegPosition, entry: LegEntry) -> LegSigns:
     degrees = position.degrees
     if degrees is None:
         degrees = entry.degrees[1] if entry.degrees else _DEGAGE
-    if (entry.name, direction) in _BENT:
-        foot, knee = _BENT[entry.name, direction]
+    if (entry.name, direction) in _FIXED:
+        foot, knee = _FIXED[entry.name, direction]
         signs = LegSigns(foot, knee)
     elif entry.name == "attitude":
         signs = _attitude(direction, degrees)
@@ -211,10 +226,7 @@ def _attitude(direction: Direction, degrees: float) -> LegSigns:
 
 def _sign(aside: float, up: float, depth: Depth) -> Sign:
     """The sign of a point, metres from the centre line and above the floor."""
-    if up < _KNEE:
-        height = 1.0 + up / _KNEE
-    elif up < _HIP:
-        height = 2.0 + (up - _KNEE) / (_HIP - _KNEE)
-    else:
-        height = 3.0 + (up - _HIP) / (_SHOULDER - _HIP)
+    line = min(bisect_right(_LINES, up), len(_LINES) - 1)
+    low, high = _LINES[line - 1 : line + 1]
+    height = line + (up - low) / (high - low)
     return Sign(round(aside / _REACH, 3), round(height, 3), depth)

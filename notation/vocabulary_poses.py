@@ -17,6 +17,8 @@ from enpointe.notation.signs import Bend, Direction, LegPosition, Orientation, S
 
 __all__ = ["POSES", "PoseEntry"]
 
+ERECT = Orientation()
+
 
 @dataclass(frozen=True, slots=True)
 class PoseEntry:
@@ -44,8 +46,8 @@ class PoseEntry:
     description: str
     source: str
     bend: Bend = Bend.STRAIGHT
-    head: Orientation = Orientation()
-    body: Orientation = Orientation()
+    head: Orientation = ERECT
+    body: Orientation = ERECT
     facing: float | None = None
     ours: str = ""
     aliases: tuple[str, ...] = ()

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from fractions import Fraction
 
 from enpointe.notation.frame import Frame
 from enpointe.notation.movement import Limb, PathKind, PathMark
+from enpointe.notation.numerals import format_beat, format_number
 from enpointe.notation.phrasing import Phrase, Repeat
 from enpointe.notation.score import Score
 from enpointe.notation.signs import (
@@ -25,7 +25,7 @@ from enpointe.notation.stage import DIRECTION_WORDS, StagePlace, Travel
 from enpointe.notation.tempo import tempo_of
 from enpointe.notation.vocabulary_arms import BODY_PLACES
 
-__all__ = ["format_beat", "format_number", "format_score", "frame_lines"]
+__all__ = ["format_beat", "format_score", "frame_lines"]
 
 
 def format_score(score: Score) -> str:
@@ -54,19 +54,6 @@ def format_score(score: Score) -> str:
     return "\n".join(lines) + "\n"
 
 
-def format_beat(beat: Fraction) -> str:
-    """A beat as scores write it: "2", "1/2", "1+1/2"."""
-    whole, rest = divmod(beat, 1)
-    if not rest:
-        return str(whole)
-    return f"{whole}+{rest}" if whole else str(rest)
-
-
-def format_number(value: float) -> str:
-    """A number that reads back as the same, without a needless point."""
-    return str(int(value)) if value == int(value) else repr(value)
-
-
 def frame_lines(frame: Frame) -> Iterator[str]:
     """The lines under a frame's beat, without indentation."""
     if frame.pose is not None:
@@ -91,9 +78,8 @@ def _leg_lines(frame: Frame) -> Iterator[str]:
         yield ", ".join([f"feet: {_feet(frame.feet)}", *(_stance(both) if both else ())])
     for side in Side:
         items: list[str] = []
-        sign, stance, step = (
-            signs.get(side) for signs in (frame.foot_signs, support, frame.locomotion)
-        )
+        sign, stance = frame.foot_signs.get(side), support.get(side)
+        step = frame.locomotion.get(side)
         if sign is not None:
             items.append(_sign(sign))
             if stance is not None and stance.bend is Bend.STRAIGHT:

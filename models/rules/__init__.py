@@ -6,6 +6,7 @@ from enpointe.models.leg_target import InAir, LegTarget, OnPointe, Standing, Toe
 from enpointe.models.rules.arms import (
     ElbowOnItsSign,
     ElbowOnTheSlope,
+    ElbowOutward,
     ForearmTurn,
     HandOnItsSign,
     PalmDown,
@@ -21,7 +22,7 @@ from enpointe.models.rules.feet import (
     BallOnItsMark,
     FeetTurnedOutAlike,
     FootAboveTheFloor,
-    FootPointsOnItsWay,
+    FootOnItsWayToPoint,
     FootRaised,
     FootTurnout,
     OnTheTip,
@@ -82,6 +83,7 @@ def _arm_rules(shape: ArmShape, side: Side) -> list[Rule]:
         return [
             HandOnItsSign(side),
             ElbowOnTheSlope(side),
+            ElbowOutward(side),
             RoundedElbow(side),
             ForearmTurn(side),
             WristLine(side),
@@ -108,7 +110,7 @@ def _leg_rules(leg: LegTarget, side: Side) -> list[Rule]:
         return [
             FootOnItsWay(side),
             KneeOnItsSign(side),
-            FootPointsOnItsWay(side),
+            FootOnItsWayToPoint(side),
             FootAboveTheFloor(side),
             LegTurnedOut(side),
         ]

@@ -16,6 +16,7 @@ from enpointe.notation import Side
 __all__ = [
     "ElbowOnItsSign",
     "ElbowOnTheSlope",
+    "ElbowOutward",
     "ForearmTurn",
     "HandOnItsSign",
     "PalmDown",
@@ -72,6 +73,33 @@ class ElbowOnTheSlope(_ArmRule):
             f"{self.side}_elbow": arm.elbow,
             f"{self.side}_slope_normal": normal / np.linalg.norm(normal),
         }
+
+
+class ElbowOutward(_ArmRule):
+    """The elbow is on the outer or back side of the arm, never folded in towards the body.
+
+    (e - i) . v >= 0 with i the point of eq. 4.6 on the line shoulder-wrist and v towards the elbow's
+    place of eq. 4.7. The slope alone leaves both sides open.
+    """
+
+    name: ClassVar[str] = "elbow on the outer side"
+    unit: ClassVar[str] = "mm"
+    bound: ClassVar[float] = 0.0
+    kind: ClassVar[Kind] = Kind.AT_LEAST
+    source: ClassVar[str] = "Neagle 2005 §4.4.2, eqs 4.6, 4.7"
+
+    def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
+        elbow = self._in_torso(body, "elbow") - symbols(f"{self.side}_inner", 3)
+        return ca.dot(elbow, symbols(f"{self.side}_outward", 3))
+
+    def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
+        arm = self._arm(target)
+        line = arm.wrist - arm.shoulder
+        share = (arm.elbow - arm.shoulder) @ line / (line @ line)
+        inner = arm.shoulder + share * line
+        outward = arm.elbow - inner
+        length = max(float(np.linalg.norm(outward)), 1e-9)
+        return {f"{self.side}_inner": inner, f"{self.side}_outward": outward / length}
 
 
 class ElbowOnItsSign(_ArmRule):

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from enpointe.models.foot_positions import Footprint
 from enpointe.models.kinematics import SymbolicBody
-from enpointe.models.leg_target import OnPointe, Standing
+from enpointe.models.leg_target import FOOT_JOINTS, POINTED_DEG, InAir, OnPointe, Standing
 from enpointe.models.rules.base import Kind, Rule, SidedRule, Symbols
 from enpointe.models.target import PoseTarget
 from enpointe.notation import Side
@@ -20,7 +20,7 @@ __all__ = [
     "BallOnItsMark",
     "FeetTurnedOutAlike",
     "FootAboveTheFloor",
-    "FootPointsOnItsWay",
+    "FootOnItsWayToPoint",
     "FootRaised",
     "FootTurnout",
     "OnTheTip",
@@ -156,25 +156,23 @@ class PointedFoot(SidedRule):
     source: ClassVar[str] = "Neagle 2005 §4.5.2; Russell et al. 2010 (77-83 deg of plantar flexion)"
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
-        stretch = {"ankle_point": POINTED_DEG, "ankle_turn": 0, "ankle_roll": 0, "toe_raise": -15}
-        return ca.vertcat(
-            *(body.joint(f"{self.side}_{j}") - radians(v) for j, v in stretch.items())
-        )
+        angles = ca.vertcat(*(body.joint(f"{self.side}_{joint}") for joint in FOOT_JOINTS))
+        return angles - symbols(f"{self.side}_foot_angles", 4)
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
-        return {}
+        leg = target.legs[Side(self.side)]
+        passing = isinstance(leg, InAir) and leg.foot is not None
+        angles = leg.foot if passing else np.radians(POINTED_DEG)
+        return {f"{self.side}_foot_angles": np.asarray(angles)}
 
 
-POINTED_DEG = 75.0
+class FootOnItsWayToPoint(PointedFoot):
+    """A passing foot rolls from flat to pointed and back, as far as the floor under it allows."""
 
-
-class FootPointsOnItsWay(PointedFoot):
-    """The same, as far as the floor under a passing foot allows."""
-
-    name: ClassVar[str] = "foot points on its way"
-    bound: ClassVar[float] = 90.0
+    name: ClassVar[str] = "foot on its way to point"
+    bound: ClassVar[float] = 60.0
     kind: ClassVar[Kind] = Kind.PREFER
-    weight: ClassVar[float] = 0.3
+    weight: ClassVar[float] = 2.0
 
 
 class FootAboveTheFloor(SidedRule):
@@ -202,7 +200,9 @@ class TurnoutAtTheHip(SidedRule):
     bound: ClassVar[float] = 21.6
     kind: ClassVar[Kind] = Kind.PREFER
     weight: ClassVar[float] = 0.5
-    source: ClassVar[str] = "60 % hip, 20-30 % ankle and foot, 10-20 % knee (IADMS through Athletico)"
+    source: ClassVar[str] = (
+        "60 % hip, 20-30 % ankle and foot, 10-20 % knee (IADMS through Athletico)"
+    )
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
         return body.joint(f"{self.side}_ankle_turn")

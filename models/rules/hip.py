@@ -16,8 +16,9 @@ from enpointe.models.target import PoseTarget
 __all__ = ["HipExtension", "HipRotation", "thigh_twist"]
 
 PERFECT_ROTATION_DEG = 62.0
-"""Outward rotation of the perfect dancer's hip: an elite's 52 on each side (Hamilton 1992: 104 in all)
-and what the shin turns on the thigh, 10-20 % of the turnout, which this body's knee does not."""
+"""Outward rotation of the perfect dancer's hip: an elite's 52 on each side (Hamilton 1992: 104 in
+all) and what the shin turns on the thigh, 10-20 % of the turnout, which this body's knee does
+not."""
 REAL_ROTATION_DEG = 54.0
 """The same from 50.2 passive degrees (Australian Ballet, n = 45) less what is never used up."""
 EXTENSION_DEG = 40.0

@@ -83,7 +83,11 @@ class StretchedKnee(SidedRule):
 
 
 class FootOnItsSign(SidedRule):
-    """The ankle of a leg in the air is where the sign puts it, in the pelvis' frame as written."""
+    """The ankle of a leg in the air is where the sign puts it from its hip, in the written frame.
+
+    From the hip joint, not from the middle of the pelvis: a pelvis lent to the leg moves the joint,
+    and a straight leg would have to bend to end where the sign put it on an erect one.
+    """
 
     name: ClassVar[str] = "foot on its sign"
     unit: ClassVar[str] = "mm"
@@ -92,15 +96,15 @@ class FootOnItsSign(SidedRule):
     source: ClassVar[str] = "Neagle 2005 §4.4.1, §4.4.6"
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
-        hips = body.frame("pelvis").position
         upright = ca.reshape(symbols("girdle", 9), 3, 3)
-        ankle = upright.T @ (body.site(f"{self.side}_ankle") - hips)
-        return ankle - symbols(f"{self.side}_ankle", 3)
+        leg = body.site(f"{self.side}_ankle") - body.site(f"{self.side}_hip")
+        return upright.T @ leg - symbols(f"{self.side}_ankle", 3)
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
         leg = target.legs[Side(self.side)]
         assert isinstance(leg, InAir)
-        return {f"{self.side}_ankle": leg.ankle, "girdle": target.upright.ravel(order="F")}
+        hip = target.figure.hips[Side(self.side)]
+        return {f"{self.side}_ankle": leg.ankle - hip, "girdle": target.upright.ravel(order="F")}
 
 
 class FootOnItsWay(FootOnItsSign):
@@ -114,7 +118,7 @@ class FootOnItsWay(FootOnItsSign):
 
 
 class KneeOnItsSign(SidedRule):
-    """A written knee is where its sign puts it, in the pelvis' frame as written: a wish."""
+    """A written knee is where its sign puts it from its hip, in the written frame: a wish."""
 
     name: ClassVar[str] = "knee on its sign"
     unit: ClassVar[str] = "mm"
@@ -124,15 +128,15 @@ class KneeOnItsSign(SidedRule):
     source: ClassVar[str] = "Neagle 2005 §4.4.3, for the knee"
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
-        hips = body.frame("pelvis").position
         upright = ca.reshape(symbols("girdle", 9), 3, 3)
-        knee = upright.T @ (body.site(f"{self.side}_knee") - hips)
-        return knee - symbols(f"{self.side}_knee", 3)
+        thigh = body.site(f"{self.side}_knee") - body.site(f"{self.side}_hip")
+        return upright.T @ thigh - symbols(f"{self.side}_knee", 3)
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
         leg = target.legs[Side(self.side)]
         assert isinstance(leg, InAir) and leg.knee is not None
-        return {f"{self.side}_knee": leg.knee, "girdle": target.upright.ravel(order="F")}
+        hip = target.figure.hips[Side(self.side)]
+        return {f"{self.side}_knee": leg.knee - hip, "girdle": target.upright.ravel(order="F")}
 
 
 class ToeOnTheFloor(SidedRule):

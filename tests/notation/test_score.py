@@ -108,10 +108,18 @@ def test_resolved_frames_are_whole(score: Score) -> None:
     """Every frame has two arms and two feet, and says what its own frame wrote."""
     for written, whole in zip(score.frames, score.resolved(), strict=True):
         assert whole.beat == written.beat
-        assert set(whole.arms) == set(Side)
+        assert set(whole.arms) == set(whole.legs) == set(Side)
         assert whole.feet is not None or set(whole.foot_signs) == set(Side)
         for side, sign in written.hands.items():
             assert whole.arms[side].wrist == sign
+        for side, leg in whole.legs.items():
+            assert (leg.position is None) is (leg.foot is not None)
+            assert leg.foot == whole.foot_signs.get(side)
+            assert leg.knee == whole.knees.get(side)
+            on_the_floor = leg.foot is None or leg.foot.height == 1
+            assert on_the_floor is (leg.support is not None)
+            assert leg.named == written.legs.get(side, leg.named)
+            assert leg.support == written.support.get(side, leg.support)
         if written.arms is not None:
             expected = arm_signs(written.arms)
             assert {side: arm.wrist for side, arm in whole.arms.items()} == expected
