@@ -6,6 +6,7 @@ import math
 
 import pytest
 
+from enpointe.models import Figure, dancer_model
 from enpointe.notation import (
     ArmsPosition,
     Depth,
@@ -18,8 +19,8 @@ from enpointe.notation import (
 )
 from enpointe.notation.vocabulary import ARM_PLACES, ARMS, FEET, find_arms, find_feet, nearest
 
-LINES = (0.0, 0.465, 1.00, 1.36, 1.68, 1.875)
-SHOULDER, ROUNDED, STRAIGHT, REACH = 0.155, 0.50, 0.515, 0.67
+FIGURE = Figure.of(dancer_model())
+"""The dancer that the places were chosen on."""
 
 
 def test_names_list_the_whole_vocabulary() -> None:
@@ -39,13 +40,20 @@ def test_each_entry_has_its_source_and_words(entry: object) -> None:
 
 @pytest.mark.parametrize("place", ARM_PLACES)
 def test_each_place_is_within_reach(place: str) -> None:
-    """A wrist in front or behind leaves some depth to the arm; a level one is not beyond it."""
+    """A wrist in front or behind leaves some depth to the arm; a level one is not beyond it.
+
+    So the names mean the same to the dancer as their signs written out, and give way for nobody
+    but a dancer of other proportions.
+    """
     sign = ARM_PLACES[place].wrist
-    line = min(int(sign.height), 5)
-    height = LINES[line - 1] + (sign.height - line) * (LINES[line] - LINES[line - 1])
-    across = sign.width * REACH - SHOULDER if sign.depth is not Depth.LEVEL else 0.0
-    arm = STRAIGHT if sign.straight else ROUNDED
-    assert math.hypot(height - LINES[3], across) < arm
+    shoulder = FIGURE.lines[3]
+    across = (
+        sign.width * FIGURE.full_width(leg=False) - FIGURE.shoulders[Side.LEFT][1]
+        if sign.depth is not Depth.LEVEL
+        else 0.0
+    )
+    arm = FIGURE.stretched_arm if sign.straight else FIGURE.rounded_arm
+    assert math.hypot(FIGURE.height(sign.height) - shoulder, across) < arm
 
 
 @pytest.mark.parametrize("entry", ARMS, ids=lambda entry: entry.name)
