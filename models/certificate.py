@@ -18,6 +18,7 @@ class RuleResult:
         bound: What still holds: at most this residual, or at least this margin.
         held: Whether it holds.
         at_least: Whether the bound is a floor (a margin) rather than a ceiling (a residual).
+        must: Whether the solver had to keep it, rather than prefer to.
         source: Where the rule is written down.
     """
 
@@ -28,6 +29,7 @@ class RuleResult:
     held: bool
     source: str
     at_least: bool = False
+    must: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +46,11 @@ class Certificate:
     def held(self) -> bool:
         """Whether every rule holds."""
         return all(result.held for result in self.results)
+
+    @property
+    def legal(self) -> bool:
+        """Whether every rule holds that the solver had to keep: the pose is the one asked for."""
+        return all(result.held for result in self.results if result.must)
 
     @property
     def broken(self) -> tuple[RuleResult, ...]:

@@ -200,8 +200,10 @@ class KeyPoseSolver:
         """
         if guess is not None:
             near = self._solve_from(target, guess)
-            if near.held:
+            if near.certificate.legal:
                 return near
+            cold = self._solve_from(target, None)
+            return cold if cold.certificate.legal else near
         return self._solve_from(target, None)
 
     def _solve_from(self, target: PoseTarget, guess: NDArray[np.float64] | None) -> KeyPose:
@@ -263,4 +265,5 @@ def _result(rule: Rule, residual: NDArray[np.float64]) -> RuleResult:
         bool(held),
         rule.source,
         at_least=rule.kind is Kind.AT_LEAST,
+        must=rule.kind in (Kind.EQUAL, Kind.AT_LEAST),
     )
