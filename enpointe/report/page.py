@@ -6,7 +6,6 @@ import re
 from functools import cache
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
-from markupsafe import Markup
 
 from enpointe.report.blocks import Page
 
@@ -25,7 +24,7 @@ def _template() -> Template:
         lstrip_blocks=True,
     )
     # Ours, not anybody's: SVG that the charts and the stave drew, with their own escaping.
-    environment.filters["trusted"] = Markup
+    environment.filters["trusted"] = environment.filters["safe"]
     return environment.get_template("report.html")
 
 

@@ -311,7 +311,6 @@ def test_help_is_given(arguments: list[str], capfd: pytest.CaptureFixture[str]) 
     assert "Usage" in capfd.readouterr().out
 
 
-@pytest.mark.xfail(reason="the help is followed by an empty 'enpointe: '")
 def test_without_a_verb_help_is_given_and_nothing_more(capfd: pytest.CaptureFixture[str]) -> None:
     assert _run([]) == 2
     out, err = capfd.readouterr()
@@ -359,7 +358,6 @@ sys.exit(_run(sys.argv[1:]))
 
 
 @pytest.mark.slow
-@pytest.mark.xfail(reason="a score may last for months; the motion does not fit in memory")
 def test_a_score_too_long_to_dance_is_refused_as_such(tmp_path: Path) -> None:
     score = tmp_path / "long.bmn"
     score.write_text(START + "beat 99999:\n  head: turn left 20\n")

@@ -227,19 +227,7 @@ def test_slerp_does_not_keep_the_hands_apart_as_the_expressive_way_does() -> Non
     assert strays["expressive"] < 0.01
 
 
-CROSSING = "a drawn-in, light movement brings the fingertips over one another (up to 7 mm)"
-
-
-@pytest.mark.parametrize(
-    "preset",
-    [
-        "natural",
-        pytest.param("happy", marks=pytest.mark.xfail(reason=CROSSING)),
-        pytest.param("sad", marks=pytest.mark.xfail(reason=CROSSING)),
-        "angry",
-        "afraid",
-    ],
-)
+@every_preset
 def test_the_fingertips_never_cross(preset: str) -> None:
     reference = motion(THIRD, preset)
     tips = sites(reference.model, reference.qpos[::2], "left_fingertips", "right_fingertips")
