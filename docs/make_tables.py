@@ -18,9 +18,9 @@ from enpointe.models.anatomy import ANKLE, ELBOW, HIP, KNEE, NECK, SHOULDER, TOE
 from enpointe.models.anthropometry import Anthropometry, Sex
 from enpointe.models.rules import Kind, Rule
 from enpointe.motion import PRESETS
-from enpointe.notation.frames import DEFAULT_DEGREES
+from enpointe.notation.amounts import DEFAULT_DEGREES
 from enpointe.notation.glyphs import GLYPHS
-from enpointe.notation.vocabulary import ARM_PLACES, ARMS, FEET
+from enpointe.notation.vocabulary import ARM_PLACES, ARMS, FEET, LEGS, POSES
 
 DOCS = Path(__file__).parent
 MARKED = re.compile(
@@ -49,10 +49,57 @@ def table(heads: Iterable[str], rows: Iterable[Iterable[object]]) -> str:
 
 def feet() -> str:
     return table(
-        ("feet", "also called", "says which foot is in front", "is", "source"),
+        ("feet", "also called", "says which foot is in front", "open form", "is", "source"),
         (
-            (e.name, ", ".join(e.aliases), "yes" if e.crossed else "no", e.description, e.source)
+            (
+                e.name,
+                ", ".join(e.aliases),
+                "yes" if e.crossed else "no",
+                "yes" if e.has_open else "no",
+                e.description,
+                e.source,
+            )
             for e in FEET
+        ),
+    )
+
+
+def legs() -> str:
+    def height(degrees: tuple[float, float, float] | None) -> str:
+        if degrees is None:
+            return ""
+        least, usual, most = degrees
+        return f"{usual:g}°, {least:g}° to {most:g}°"
+
+    return table(
+        ("leg", "also called", "directions", "height", "is", "source"),
+        (
+            (
+                e.name,
+                ", ".join(e.aliases),
+                ", ".join(e.directions),
+                height(e.degrees),
+                e.description,
+                e.source,
+            )
+            for e in LEGS
+        ),
+    )
+
+
+def poses() -> str:
+    return table(
+        ("pose on the left leg", "also called", "right leg", "is", "source", "ours"),
+        (
+            (
+                e.name,
+                ", ".join(e.aliases),
+                " ".join(str(word) for word in (e.leg.name, e.leg.direction) if word is not None),
+                e.description,
+                e.source,
+                e.ours,
+            )
+            for e in POSES
         ),
     )
 
@@ -184,7 +231,8 @@ def _is_rule(value: object) -> bool:
 
 
 TABLES: dict[str, Callable[[], str]] = {
-    f.__name__: f for f in (feet, arms, places, degrees, glyphs, presets, segments, joints, ballet)
+    f.__name__: f
+    for f in (feet, legs, arms, poses, places, degrees, glyphs, presets, segments, joints, ballet)
 }
 
 

@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from enpointe.comparing import compare as compare
     from enpointe.doctor import diagnose as diagnose
     from enpointe.errors import EnpointeError as EnpointeError
+    from enpointe.notating import Notation as Notation
+    from enpointe.notating import notate as notate
+    from enpointe.notating import recognise as recognise
     from enpointe.notation import load_score as load_score
     from enpointe.performing import Performance as Performance
     from enpointe.performing import perform as perform
@@ -30,27 +33,33 @@ __version__ = "0.1.0"
 _HOMES = {
     "Comparison": "enpointe.comparing",
     "EnpointeError": "enpointe.errors",
+    "Notation": "enpointe.notating",
     "Performance": "enpointe.performing",
     "Poses": "enpointe.posing",
     "compare": "enpointe.comparing",
     "diagnose": "enpointe.doctor",
     "load_score": "enpointe.notation",
+    "notate": "enpointe.notating",
     "perform": "enpointe.performing",
     "pose": "enpointe.posing",
+    "recognise": "enpointe.notating",
     "write_report": "enpointe.report",
 }
 
 __all__ = [
     "Comparison",
     "EnpointeError",
+    "Notation",
     "Performance",
     "Poses",
     "__version__",
     "compare",
     "diagnose",
     "load_score",
+    "notate",
     "perform",
     "pose",
+    "recognise",
     "write_report",
 ]
 __getattr__, __dir__ = lazy(__name__, _HOMES)

@@ -147,7 +147,10 @@ def compare(
 def pose(
     source: Annotated[
         str | None,
-        typer.Argument(help="A position ('arms fifth en haut'), a shipped score, or a .bmn file."),
+        typer.Argument(
+            help="A position ('arms fifth en haut'), a shipped score, or a .bmn file; or, to be"
+            " named, a pose (FILE.npy) or a moment of a motion (FILE.npz@SECONDS)."
+        ),
     ] = None,
     names: Annotated[bool, typer.Option("--list", help="List the vocabulary.")] = False,
     height: Height = 1.68,
@@ -169,6 +172,15 @@ def pose(
         return DONE
     if source is None:
         raise EnpointeError("name a position, a score or a .bmn file, or use --list")
+    from enpointe.notating import is_seen, see
+
+    if is_seen(source):
+        seen = see(source, dancer=_dancer(height, mass, sex))
+        if json:
+            console.print_json(seen.summary())
+        else:
+            console.print(f"{seen.name}: {seen.recognition.name}")
+        return DONE if seen.recognition.named else NO
     with console.progress() as progress:
         poses = enpointe.pose(source, style=_style(turnout), dancer=_dancer(height, mass, sex))
         folder = _folder(out, source)
@@ -176,6 +188,37 @@ def pose(
     console.warn(files.warning)
     console.show(poses.summary(), files, folder)
     return DONE if poses.held else NO
+
+
+@app.command()
+def notate(
+    motion: Annotated[str, typer.Argument(help="A motion file (.npz, as perform writes it).")],
+    tempo: Annotated[
+        float | None, typer.Option(help="Beats a minute; estimated if left out.")
+    ] = None,
+    metre: Annotated[str, typer.Option(help="Beats in a bar, and their note value.")] = "4/4",
+    height: Height = 1.68,
+    mass: Mass = 54.0,
+    sex: SexOption = SexName.FEMALE,
+    out: Out = None,
+    json: Json = False,
+    quiet: Quiet = False,
+    seed: Seed = 0,
+) -> int:
+    """Read a motion back into a score, and draw its stave."""
+    console = Console(json=json, quiet=quiet)
+    notation = enpointe.notate(
+        motion, tempo=tempo, metre=_metre(metre), dancer=_dancer(height, mass, sex)
+    )
+    folder = _folder(out, motion)
+    files = notation.save(folder, Path(motion).stem)
+    if json:
+        console.show(notation.summary(), files, folder)
+    else:
+        for each in notation.notated.frames:
+            console.print(f"beat {each.frame.beat}: {each.recognition.name}")
+        console.print(f"score: {files['score']}")
+    return DONE
 
 
 @app.command()
@@ -235,8 +278,17 @@ def _folder(out: Path | None, source: str) -> Path:
     return out if out is not None else Path(Path(source).stem.strip().replace(" ", "-") or "out")
 
 
+def _metre(text: str) -> tuple[int, int]:
+    pulses, _, value = text.partition("/")
+    if not (pulses.isdecimal() and value.isdecimal() and 1 <= int(pulses) <= 32):
+        raise EnpointeError(f"{text!r} is no metre; write it as 3/4")
+    if int(value) not in (1, 2, 4, 8, 16):
+        raise EnpointeError(f"{text!r} is no metre; its notes are 1, 2, 4, 8 or 16")
+    return int(pulses), int(value)
+
+
 def _style(turnout: float) -> Style:
-    from enpointe.models.target import Style
+    from enpointe.models.style import Style
 
     return Style(turnout_deg=turnout)
 

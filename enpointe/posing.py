@@ -41,6 +41,8 @@ class Poses:
 
     def summary(self) -> dict[str, object]:
         """The figures that `--json` prints."""
+        from enpointe.models.recognition import recognise
+
         return {
             "poses": [
                 {
@@ -58,6 +60,7 @@ class Poses:
                         for r in p.certificate.results
                     ],
                     "solve_ms": p.solve_ms,
+                    "recognised_as": recognise(self.model, p.qpos).name,
                 }
                 for p in self.key_poses
             ]
@@ -110,8 +113,11 @@ def vocabulary_score(name: str) -> Score | None:
     elif part == "arms" and (arms := find_arms(position)) is not None:
         leads = " right leads" if arms.needs_leading else ""
         lines = ["feet: first", f"arms: {arms.name}{leads}"]
+    elif name in names() and position.startswith("pointed"):
+        other = "seconde" if position.endswith("seconde") else _OPPOSITE[position.split()[-1]]
+        lines = [f"left leg: pointed {other}", _WIDE, f"right leg: {position}"]
     elif name in names() and part == "leg":
-        lines = [_ON_THE_LEFT, "arms: a la seconde", f"right leg: {position}"]
+        lines = [_ON_THE_LEFT, _WIDE, f"right leg: {position}"]
     elif part == "pose" and find_pose(position) is not None:
         lines = [f"pose: {position} on left"]
     else:
@@ -121,6 +127,8 @@ def vocabulary_score(name: str) -> Score | None:
 
 
 _ARMS_AT_REST = "arms: fifth en bas"
+_WIDE = "arms: a la seconde"
+_OPPOSITE = {"devant": "derrière", "derrière": "devant"}
 _ON_THE_LEFT = "left foot: 0 wide, 1 high, level"
 
 

@@ -8,6 +8,7 @@ from math import atan2, degrees
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from enpointe.models.figure import Figure
 from enpointe.models.foot_positions import Footprint
@@ -19,7 +20,7 @@ __all__ = ["Footing", "footing", "footprint_of", "knee_bend"]
 Vector = NDArray[np.float64]
 ALOFT = 0.08
 """A dancer whose lowest sole is higher than this, m, is in the air; a lower one is taken for a
-dancer not quite set down, and her lowest sole for the floor."""
+dancer not quite set down, and the lowest point of the foot under her weight for the floor."""
 NEAR = 0.06
 """A sole that is no higher above the floor than this, m, may bear weight: what 5 degrees in hip,
 knee and ankle together lift the nearest part of a foot that stood."""
@@ -34,10 +35,15 @@ DEMI_PLIE_DEG = 29.0
 """Bends of the knee from which it is a grand plié and a demi-plié: halfway between their amounts
 and that of the next lower one (`Style`)."""
 _RISE_OF_GRAND_PLIE = 50.0
-_LEAST_SHARE = 0.15
-"""A raised foot that carries less of the way to the centre of mass than this does not bear."""
-_CLOSE = 0.10
-"""Feet no farther apart than this, m, share the weight."""
+_LEAST_SHARE = 0.3
+"""A raised foot that carries less of the weight than this does not bear: a toe stretched out to the
+floor carries none, of two raised feet each carries half, and noise of 5 degrees moves either by 15
+per cent."""
+_OF_THE_HIP = 0.4
+"""The share of a sole's tilt that is the hip's: a half where hip and ankle alone make it, sideways,
+a third where the knee does too."""
+_CLOSE = 0.12
+"""Raised feet no farther apart than this, m, share the weight."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,12 +70,14 @@ class Footing:
 
 def footing(joints: Joints) -> Mapping[Side, Footing]:
     """Both feet, from the heights of their soles and the place of the centre of mass."""
-    lows = {side: min(_sole(joints, side)[:, 2]) for side in Side}
-    floor = min(lows.values())
-    aloft = floor > ALOFT
-    clearance = {side: low - (0.0 if aloft else floor) for side, low in lows.items()}
+    lows = {side: float(min(_sole(joints, side)[:, 2])) for side in Side}
     shares = _shares(joints)
-    return {side: _one(joints, side, clearance[side], shares[side], aloft=aloft) for side in Side}
+    floor = min(lows[side] for side in Side if shares[side] > _LEAST_SHARE)
+    aloft = min(lows.values()) > ALOFT
+    return {
+        side: _one(joints, side, low - (0.0 if aloft else floor), shares[side], aloft=aloft)
+        for side, low in lows.items()
+    }
 
 
 def knee_bend(joints: Joints, side: Side) -> float:
@@ -82,8 +90,10 @@ def knee_bend(joints: Joints, side: Side) -> float:
 def footprint_of(joints: Joints, side: Side, contact: FloorContact, figure: Figure) -> Footprint:
     """Where a foot that bears weight would stand flat, in the world.
 
-    A rising foot keeps its ball; on pointe it has drawn its tip in to where a quarter of the way
-    from heel to tip was (see `StanceTracker`).
+    A rising foot, as in a grand plié, keeps its ball; on pointe it has drawn its tip in to where a quarter of the way
+    from heel to tip was (see `StanceTracker`). A foot that stands lies flat, so that what its sole
+    is off the level is an error of the angles above it; `_OF_THE_HIP` of it is taken back about
+    the hip.
     """
     along = joints[f"{side}_ball"] - joints[f"{side}_heel"]
     along = along / np.linalg.norm(along)
@@ -91,14 +101,18 @@ def footprint_of(joints: Joints, side: Side, contact: FloorContact, figure: Figu
     up = rise - (rise @ along) * along
     aside = np.cross(up, along)
     direction = atan2(-aside[0], aside[1])
+    turned = np.array([np.cos(direction), np.sin(direction)])
+    if contact is FloorContact.FLAT and _steepness(along) < HEEL_DOWN_DEG:
+        hip, ankle = joints[f"{side}_hip"], joints[f"{side}_ankle"]
+        tilt = np.cross(up / np.linalg.norm(up), [0.0, 0.0, 1.0])
+        level = hip + Rotation.from_rotvec(_OF_THE_HIP * tilt).apply(ankle - hip)
+        return Footprint(level[:2], direction)
     if contact is FloorContact.POINTE:
         forward = figure.ball_forward + figure.toe_length
         drawn = -0.5 * figure.heel_back
-        place, offset = joints[f"{side}_toe_tip"], drawn + 0.25 * (forward - drawn)
-    else:
-        place, offset = joints[f"{side}_ball"], figure.ball_forward
-    turned = np.array([np.cos(direction), np.sin(direction)])
-    return Footprint(place[:2] - offset * turned, direction)
+        offset = drawn + 0.25 * (forward - drawn)
+        return Footprint(joints[f"{side}_toe_tip"][:2] - offset * turned, direction)
+    return Footprint(joints[f"{side}_ball"][:2] - figure.ball_forward * turned, direction)
 
 
 def _one(joints: Joints, side: Side, clearance: float, share: float, *, aloft: bool) -> Footing:
@@ -113,7 +127,7 @@ def _one(joints: Joints, side: Side, clearance: float, share: float, *, aloft: b
     )
     flat = rise < HEEL_DOWN_DEG or (bend is Bend.GRAND_PLIE and rise < _RISE_OF_GRAND_PLIE)
     floor: FloorContact | None = None
-    if not aloft and clearance < NEAR and (flat or share > _LEAST_SHARE):
+    if not aloft and abs(clearance) < NEAR and (flat or share > _LEAST_SHARE):
         toes = _steepness(joints[f"{side}_toe_tip"] - joints[f"{side}_ball"])
         risen = FloorContact.POINTE if toes > TOES_UP_DEG else FloorContact.DEMI_POINTE
         floor = FloorContact.FLAT if flat else risen
@@ -132,11 +146,25 @@ def _sole(joints: Joints, side: Side) -> Vector:
 
 
 def _shares(joints: Joints) -> dict[Side, float]:
-    """How far the centre of mass is on the way from the other foot to each one, about 0 to 1."""
-    left, right = (joints[f"{side}_ball"][:2] for side in Side)
-    apart = left - right
-    length2 = float(apart @ apart)
-    if length2 < _CLOSE**2:
+    """What each foot carries of the weight, 0 to 1, by the lever of the centre of mass.
+
+    Of a foot that is down the whole sole counts, of a raised one the toes.
+    """
+    soles = {side: _sole(joints, side)[:, :2] for side in Side}
+    bases = {}
+    for side in Side:
+        rise = _steepness(joints[f"{side}_ball"] - joints[f"{side}_heel"])
+        start = 0 if rise < HEEL_DOWN_DEG else 1
+        bases[side] = soles[side][start], soles[side][2]
+    if float(np.linalg.norm(soles[Side.LEFT][1] - soles[Side.RIGHT][1])) < _CLOSE:
         return dict.fromkeys(Side, 0.5)
-    share = float((joints.com[:2] - right) @ apart) / length2
-    return {Side.LEFT: share, Side.RIGHT: 1.0 - share}
+    away = {side: _distance_to(joints.com[:2], *base) for side, base in bases.items()}
+    total = max(sum(away.values()), 1e-9)
+    return {side: away[side.other] / total for side in Side}
+
+
+def _distance_to(point: Vector, start: Vector, end: Vector) -> float:
+    """Of a point to a line segment, m."""
+    along = end - start
+    share = float(np.clip((point - start) @ along / max(float(along @ along), 1e-12), 0.0, 1.0))
+    return float(np.linalg.norm(point - start - share * along))

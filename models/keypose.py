@@ -35,6 +35,8 @@ __all__ = ["KeyPose", "KeyPoseSolver", "PoseProblem"]
 
 _RANGE_MARGIN = np.radians(0.5)
 _POSTURE_WEIGHT = 1e-3
+FOLD = 1.2
+"""A pose with a joint farther than this from a guess near by is another fold of the limbs, rad."""
 _IPOPT: dict[str, Any] = {
     "ipopt.print_level": 0,
     "ipopt.sb": "yes",
@@ -204,7 +206,8 @@ class KeyPoseSolver:
             if near.certificate.legal:
                 return near
             cold = self._solve_from(target, None)
-            return cold if cold.certificate.legal else near
+            folded = float(np.abs(cold.qpos[7:] - guess[7:]).max()) > FOLD
+            return cold if cold.certificate.legal and not folded else near
         return self._solve_from(target, None)
 
     def _solve_from(self, target: PoseTarget, guess: NDArray[np.float64] | None) -> KeyPose:

@@ -168,6 +168,7 @@ def leg_target(
         ScoreError: A sign that the leg does not reach.
     """
     turnout = radians(style.turnout_deg)
+    gives = leg.named is not None
     if leg.bears and leg.support is not None and footprint is not None:
         bend = _knee_bend(leg, style)
         if leg.support.floor is FloorContact.POINTE:
@@ -180,10 +181,14 @@ def leg_target(
         ahead = {"front": 1.0, "behind": -1.0, "level": 0.0}[leg.foot.depth.value]
         return ToeOnFloor(_LINES[ahead != 0.0], ahead, turnout)
     if leg.knee is None:
-        ankle = extremity(figure, side, leg.foot, figure.stretched_leg, leg=True, source=source)
+        ankle = extremity(
+            figure, side, leg.foot, figure.stretched_leg, leg=True, gives=gives, source=source
+        )
         return InAir(ankle, None, turnout)
-    knee = extremity(figure, side, leg.knee, figure.thigh, leg=True, source=source)
-    ankle = extremity(figure, side, leg.foot, figure.shank, leg=True, root=knee, source=source)
+    knee = extremity(figure, side, leg.knee, figure.thigh, leg=True, gives=gives, source=source)
+    ankle = extremity(
+        figure, side, leg.foot, figure.shank, leg=True, root=knee, gives=gives, source=source
+    )
     return InAir(ankle, knee, turnout)
 
 

@@ -11,14 +11,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
-from enpointe.models.footing import Footing, footing
 from enpointe.models.foot_positions import DEFAULT_TURNOUT_DEG
+from enpointe.models.footing import Footing, footing
 from enpointe.models.joints import Joints
 from enpointe.notation import Orientation, Side
 
 __all__ = ["LimbDirections", "orientation"]
 
 Vector = NDArray[np.float64]
+_HIGH = 0.25
+"""A toe this high, m, is one that the pelvis gives way to: the hip alone takes a leg behind to some
+40 degrees (`rules.hip`), which is where this is."""
 _SQUARE_DEG = 6.0
 """Pelvis and chest that face the same way within this need no decision which of them to believe."""
 
@@ -111,9 +114,9 @@ def orientation(rotation: Vector) -> Orientation:
 def _facing(joints: Joints, feet: Mapping[Side, Footing]) -> float:
     """Where the dancer faces, rad.
 
-    The pelvis says it where both feet bear. A dancer opens the pelvis for a leg behind her and
-    keeps the chest; another one turns the chest over a square pelvis. Where the two disagree, the
-    foot that she stands on says which of them to believe.
+    The pelvis says it where both feet bear. A dancer opens the pelvis for a high leg and keeps the
+    chest; another one turns the chest over a square pelvis. Where the two disagree, the chest is
+    believed with a leg in the air, and otherwise what agrees with the foot that she stands on.
     """
     pelvis = radians(orientation(joints.pelvis).turn)
     torso = radians(orientation(joints.torso).turn)
@@ -121,6 +124,8 @@ def _facing(joints: Joints, feet: Mapping[Side, Footing]) -> float:
     if len(bearing) != 1 or abs(_wrapped(degrees(torso - pelvis))) < _SQUARE_DEG:
         return pelvis
     (side,) = bearing
+    if feet[side.other].clearance > _HIGH:
+        return torso
     foot = joints[f"{side}_ball"] - joints[f"{side}_ankle"]
     outward = DEFAULT_TURNOUT_DEG if side is Side.LEFT else -DEFAULT_TURNOUT_DEG
     from_foot = degrees(float(np.arctan2(foot[1], foot[0]))) - outward

@@ -18,7 +18,6 @@ from numpy.typing import ArrayLike, NDArray
 from enpointe.models.extremities import elbow_of_rounded_arm
 from enpointe.models.figure import ROUNDED_ELBOW_DEG, STRETCHED_DEG, Figure
 from enpointe.models.foot_positions import (
-    DEFAULT_TURNOUT_DEG,
     TURNOUT_RANGE_DEG,
     Footprint,
     footprints,

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import product
 
 import mujoco
 import numpy as np
@@ -23,6 +24,7 @@ from enpointe.models.style import Style
 from enpointe.models.target import PoseTarget, pose_target
 from enpointe.notation import (
     ArmsPosition,
+    Bend,
     Direction,
     Frame,
     LegPosition,
@@ -30,15 +32,19 @@ from enpointe.notation import (
     Side,
     Support,
 )
-from enpointe.notation.vocabulary import ARM_PLACES, ARMS, LEGS, ArmPlace
+from enpointe.notation.vocabulary import ARM_PLACES, ARMS, LEGS, ArmPlace, find_leg
 from enpointe.notation.vocabulary_legs import LegEntry
 
-__all__ = ["ArmReference", "ArmsReference", "LegReference", "References"]
+__all__ = ["ArmReference", "ArmsReference", "LegReference", "References", "heights_of"]
 
 Vector = NDArray[np.float64]
 _STEP_DEG = 15.0
 """Heights of a leg are tried this far apart."""
-_SOLVED_HEIGHTS = (45.0, 90.0, 120.0)
+_STEPS = 5
+_LOWEST = 40.0
+"""A straight leg is not called raised below this: dégagé and tendu are there."""
+_IN_FLIGHT = ("pointed",)
+"""Positions that only a jump has: a leg that hangs straight down is off no floor otherwise."""
 _MIRROR = np.array([1.0, -1.0, 1.0])
 
 
@@ -67,13 +73,32 @@ class LegReference:
         position: With its direction and its height in degrees where it has one.
         upper: Direction of the thigh.
         lower: Direction of the shank.
-        touches: Whether the toe is on the floor (True), just off it (False), or anywhere (None).
+        touches: Whether the toe is on the floor.
+        bend: Of the leg that she stands on, where the position depends on it; None for any.
     """
 
     position: LegPosition
     upper: Vector
     lower: Vector
-    touches: bool | None = None
+    touches: bool = False
+    bend: Bend | None = None
+
+    def fits(self, limbs: LimbDirections, side: Side) -> bool:
+        """Whether a leg of `side` can be in this position over the leg that she stands on."""
+        if self.position.name in _IN_FLIGHT and limbs.bearing:
+            return False
+        if self.bend is None:
+            return True
+        straight = limbs.feet[side.other].bend is Bend.STRAIGHT
+        return straight == (self.bend is Bend.STRAIGHT)
+
+
+def heights_of(position: LegPosition) -> tuple[float, float]:
+    """Least and greatest height of a position that has one, degrees."""
+    found = find_leg(position.name)
+    assert found is not None and found[0].degrees is not None
+    low, _, high = found[0].degrees
+    return max(low, _LOWEST), high
 
 
 class References:
@@ -91,9 +116,7 @@ class References:
     def __init__(self, model: mujoco.MjModel) -> None:
         self.figure = Figure.of(model)
         self.arms = tuple(_arms())
-        self.arm_places = {
-            name: self._arm_place(name, place) for name, place in ARM_PLACES.items()
-        }
+        self.arm_places = {name: self._arm_place(name, place) for name, place in ARM_PLACES.items()}
         self.legs = tuple(self._legs(model))
 
     def _arm_place(self, name: str, place: ArmPlace) -> ArmReference:
@@ -119,8 +142,9 @@ class References:
     def _by_signs(self, entry: LegEntry, direction: Direction) -> Iterator[LegReference]:
         heights: list[float | None] = [None]
         if entry.degrees is not None:
-            low, _, high = entry.degrees
-            heights = [*np.arange(max(low, _SOLVED_HEIGHTS[0]), high + 1.0, _STEP_DEG).tolist()]
+            low, usual, high = entry.degrees
+            steps = np.arange(-_STEPS, _STEPS + 1) * _STEP_DEG + usual
+            heights = [float(h) for h in steps if max(low, _LOWEST) <= h <= high]
         for height in heights:
             position = LegPosition(entry.name, direction, height)
             leg = self._target(_on_the_right(position)).legs[Side.LEFT]
@@ -129,20 +153,21 @@ class References:
             hip = self.figure.hips[Side.LEFT]
             knee = leg.knee if leg.knee is not None else 0.5 * (hip + leg.ankle)
             thigh, shank = _unit(knee - hip), _unit(leg.ankle - knee)
-            yield LegReference(position, thigh, shank, False if entry.name == "dégagé" else None)
+            yield LegReference(position, thigh, shank)
 
     def _by_solving(
         self, entry: LegEntry, direction: Direction, solver: KeyPoseSolver
     ) -> Iterator[LegReference]:
-        for height in _SOLVED_HEIGHTS if entry.degrees is not None else (None,):
+        bends = (Bend.STRAIGHT, Bend.DEMI_PLIE) if entry.degrees is None else (None,)
+        for height in entry.degrees or (None,):
             position = LegPosition(entry.name, direction, height)
-            touches = {"tendu": True, "dégagé": False}.get(entry.name)
-            for real in (False, True):
-                solved = solver.solve(self._target(_on_the_right(position), Style(real=real)))
+            for bend, real in product(bends, (False, True)):
+                frame = _on_the_right(position, bend or Bend.STRAIGHT)
+                solved = solver.solve(self._target(frame, Style(real=real)))
                 if solved.held:
                     limbs = LimbDirections.of(solver.model, solved.qpos)
                     thigh, shank = limbs.thigh[Side.LEFT], limbs.shank[Side.LEFT]
-                    yield LegReference(position, thigh, shank, touches)
+                    yield LegReference(position, thigh, shank, entry.name == "tendu", bend)
 
     def _target(self, frame: Frame, style: Style | None = None) -> PoseTarget:
         score = Score("reference", "Cecchetti", (4, 4), 60.0, (frame,))
@@ -159,12 +184,12 @@ def _arms() -> Iterator[ArmsReference]:
             yield ArmsReference(ArmsPosition(entry.name, leading), places)
 
 
-def _on_the_right(position: LegPosition) -> Frame:
+def _on_the_right(position: LegPosition, bend: Bend = Bend.STRAIGHT) -> Frame:
     """Standing on the right leg, the left leg working."""
     return Frame(
         Fraction(0),
         arms=ArmsPosition("à la seconde"),
-        support={Side.RIGHT: Support()},
+        support={Side.RIGHT: Support(bend=bend)},
         legs={Side.LEFT: position},
     )
 

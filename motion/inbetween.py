@@ -141,7 +141,7 @@ class _Way:
 
     @property
     def _stepping(self) -> bool:
-        """Whether the weight goes from one foot to the other: one arrives, then the other leaves."""
+        """Whether the weight goes from foot to foot: one arrives, then the other leaves."""
         paths = self._legs.values()
         return (
             any(path.leaves for path in paths)
@@ -165,8 +165,16 @@ class _Way:
             return
         planned = {}
         for side, path in self._legs.items():
-            lift = self._contact(side, path.leaves_at, path.before) if path.leaves else None
-            touch = self._contact(side, path.arrives_at, path.after) if path.arrives else None
+            lift = (
+                self._contact(side, path.leaves_at, path.leaving(path.leaves_at))
+                if path.leaves
+                else None
+            )
+            touch = (
+                self._contact(side, path.arrives_at, path.arriving(path.arrives_at))
+                if path.arrives
+                else None
+            )
             planned[side] = replace(path, lift=lift, touch=touch)
         self._legs = planned
 
@@ -208,21 +216,21 @@ class _Way:
             com=None,
             name=f"{start.name} to {end.name}, {share:.0%}",
         )
-        return replace(target, **self._balance(target, share))
-
-    def _balance(self, target: PoseTarget, share: float) -> dict[str, Array]:
-        """Where the weight is: over the feet that stay, before others leave and after they come."""
         if self._com is not None:
-            return {"com": self._com(share)}
+            return replace(target, com=self._com(share))
+        return replace(target, weight=self._weight(share))
+
+    def _weight(self, share: float) -> Array | None:
+        """Where the weight is: over the feet that stay, before others leave and after they come."""
         if len(self._start.support) == 0 or len(self._end.support) == 0:
-            return {}
+            return None
         leaves = [path.leaves_at for path in self._legs.values() if path.leaves]
         arrives = [path.arrives_at for path in self._legs.values() if path.arrives]
         low = max(arrives) if arrives else 0.0
         high = min(leaves) if leaves else 1.0
         moved = float(np.clip((share - low) / (high - low), 0.0, 1.0))
         first, last = centroid(self._start.support), centroid(self._end.support)
-        return {"weight": (1 - moved) * first + moved * last}
+        return np.asarray((1 - moved) * first + moved * last)
 
 
 def _as_solved(model: mujoco.MjModel, pose: KeyPose, side: Side) -> ArmTarget:

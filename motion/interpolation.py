@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 
+import mujoco
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import convolve1d
@@ -45,6 +46,9 @@ Parzen window whose effective width (twice its standard deviation) is that long.
 ends in a jolt that the feet must take; a wider window would soften it and no longer be the effort
 that was asked.
 """
+LEG_ROUNDING = 0.032
+"""The same of root and legs, s. They are a chain closed by the floor, and an average of two angles
+is not on it: over a wider window a foot that rolls through dips into the floor."""
 
 
 @dataclass(frozen=True)
@@ -154,7 +158,7 @@ def interpolate(
         if progress is not None:
             progress(i + 1, len(stations) - 1)
     if kind is not Interpolation.SLERP:
-        qpos = _round_corners(qpos)
+        qpos = _round_corners(model, qpos)
     events = [
         Event(float(t), "key pose", pose.name, float(frame.beat))
         for t, pose, frame in zip(
@@ -202,9 +206,23 @@ def _flown(station: Station) -> Callable[[float], Array] | None:
     return lambda share: flight.at((1 - share) * first + share * last)
 
 
-def _round_corners(qpos: Array) -> Array:
-    """Average over a Parzen window; quaternions nearly agree within it, so theirs is sound too."""
-    window = parzen(2 * int(ROUNDING * RATE / 2) + 1, sym=True)
-    smooth = convolve1d(qpos, window / window.sum(), axis=0, mode="nearest")
+def _round_corners(model: mujoco.MjModel, qpos: Array) -> Array:
+    """Average over Parzen windows; quaternions nearly agree within one, so theirs is sound too."""
+    legs = np.zeros(model.nq, dtype=bool)
+    for j in range(model.njnt):
+        name = model.joint(j).name
+        width = 7 if name == "root" else 1
+        start = int(model.jnt_qposadr[j])
+        legs[start : start + width] = any(part in name for part in _LEG_JOINTS)
+    smooth = _averaged(qpos, ROUNDING)
+    smooth[:, legs] = _averaged(qpos[:, legs], LEG_ROUNDING)
     smooth[:, 3:7] /= np.linalg.norm(smooth[:, 3:7], axis=1, keepdims=True)
-    return np.asarray(smooth)
+    return smooth
+
+
+_LEG_JOINTS = ("root", "hip", "knee", "ankle", "toe")
+
+
+def _averaged(values: Array, width: float) -> Array:
+    window = parzen(2 * int(width * RATE / 2) + 1, sym=True)
+    return np.asarray(convolve1d(values, window / window.sum(), axis=0, mode="nearest"))

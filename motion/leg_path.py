@@ -8,7 +8,7 @@ then. The ballet rules hold the rest: foot above the floor, pointed as soon as i
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import acos, radians, sin
 
 import mujoco
@@ -31,8 +31,11 @@ from enpointe.notation import Side
 __all__ = ["STEP", "LegPath"]
 
 Vector = NDArray[np.float64]
-ROLL = 0.5
-"""Share of a swing in which a foot rolls through from flat to pointed, or back."""
+POINTED_ABOVE = 0.10
+"""How much higher than a standing one an ankle must be for a foot to be fully pointed under it, m:
+in a tendu it is about so high."""
+STRETCH = 0.4
+"""Share of a flight in which a foot stretches, or gives itself up to the floor again."""
 WEIGHT_SHIFT = 0.25
 """Share of a passage in which weight moves before a foot leaves, or after it arrives."""
 STEP = (0.4, 0.6)
@@ -93,15 +96,34 @@ class LegPath:
     def at(self, share: float, *, aloft: bool = False) -> LegTarget:
         """What the leg is asked at `share` of the passage, on the floor or `aloft`."""
         if aloft:
-            return self._swinging(share)
+            return self._swinging(share, aloft=True)
         if self.stays:
             return self._standing(share)
         swing = self.swing(share)
         if swing <= 0.0 and self.leaves:
-            return self.before
+            return self.leaving(share)
         if swing >= 1.0 and self.arrives:
-            return self.after
+            return self.arriving(share)
         return self._swinging(swing)
+
+    def leaving(self, share: float) -> LegTarget:
+        """The stance before, turned about its ball as far as the body has turned by then."""
+        return self._pivoted(self.before, share)
+
+    def arriving(self, share: float) -> LegTarget:
+        """The stance after, turned about its ball by what the body has still to turn."""
+        return self._pivoted(self.after, share - 1.0)
+
+    def _pivoted(self, leg: LegTarget, share: float) -> LegTarget:
+        footprint = _print(leg)
+        turn = share * (self.end.target.facing - self.start.target.facing)
+        if footprint is None or turn == 0.0:
+            return leg
+        ball = self.start.target.figure.ball_forward
+        pivot = footprint.point(ball)
+        foot = Footprint(pivot, footprint.direction + turn)
+        assert isinstance(leg, Standing | OnPointe)
+        return replace(leg, footprint=Footprint(foot.point(-ball), foot.direction))
 
     def _standing(self, share: float) -> LegTarget:
         footprint = _print(self.before)
@@ -119,7 +141,7 @@ class LegPath:
         bend = (1 - share) * _bend(self.before) + share * _bend(self.after)
         return Standing(place, rise, bend)
 
-    def _swinging(self, swing: float) -> InAir:
+    def _swinging(self, swing: float, *, aloft: bool = False) -> InAir:
         thigh0, shank0 = _directions(self.model, self.lift or self.start, self.side)
         thigh1, shank1 = _directions(self.model, self.touch or self.end, self.side)
         figure = self.start.target.figure
@@ -127,17 +149,34 @@ class LegPath:
         knee = hip + figure.thigh * _arc(thigh0, thigh1, swing)
         ankle = knee + figure.shank * _arc(shank0, shank1, swing)
         turnout = getattr(self.after, "turnout", getattr(self.before, "turnout", radians(60.0)))
-        return InAir(ankle, knee, turnout, foot=self._foot(swing))
+        foot = self._foot_aloft(swing) if aloft else self._foot(swing, float(ankle[2]))
+        return InAir(ankle, knee, turnout, foot=foot)
 
-    def _foot(self, swing: float) -> Vector:
-        """Angles of the foot: from those of the pose before through pointed to those after."""
-        pointed = np.radians(POINTED_DEG)
-        pose, rolled = (
-            (self.lift or self.start, swing) if swing < 0.5 else (self.touch or self.end, 1 - swing)
-        )
+    def _foot_aloft(self, share: float) -> Vector:
+        """Angles of the foot in a flight: soon stretched, and given up before landing."""
         joints = [self.model.joint(f"{self.side}_{j}").qposadr[0] for j in FOOT_JOINTS]
+        pose, far = (self.start, share) if share < 0.5 else (self.end, 1.0 - share)
         own = pose.qpos[joints]
-        return np.asarray(own + min(rolled / ROLL, 1.0) * (pointed - own))
+        return np.asarray(own + min(far / STRETCH, 1.0) * (np.radians(POINTED_DEG) - own))
+
+    def _foot(self, swing: float, ankle: float) -> Vector:
+        """Angles of the foot: flat where the ankle is as low as a standing one's, pointed above.
+
+        Args:
+            swing: How far the swing is.
+            ankle: Height of the ankle against the hips, m.
+        """
+        first, last = self.lift or self.start, self.touch or self.end
+        hips = (1 - swing) * first.qpos[2] + swing * last.qpos[2]
+        lifted = (hips + ankle - self.start.target.figure.ankle_height) / POINTED_ABOVE
+        contact = self.lift if swing < 0.5 or self.touch is None else self.touch
+        flat = np.zeros(len(FOOT_JOINTS))
+        if contact is not None:
+            joints = [self.model.joint(f"{self.side}_{j}").qposadr[0] for j in FOOT_JOINTS]
+            flat = contact.qpos[joints]
+        return np.asarray(
+            flat + float(np.clip(lifted, 0.0, 1.0)) * (np.radians(POINTED_DEG) - flat)
+        )
 
 
 def _print(leg: LegTarget) -> Footprint | None:

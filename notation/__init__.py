@@ -2,13 +2,17 @@
 
 Example:
     >>> from enpointe.notation import format_score, load_score, parse_score
+    >>> from enpointe.notation import score_from_json, score_to_json
     >>> score = load_score("third-port-de-bras")
     >>> len(score.frames), score.frames[1].arms.name
     (9, 'fifth en haut')
     >>> score.resolved()[2].arms["left"].wrist.height  # not written at beat 2: held from beat 1
-    5.7
-    >>> parse_score(format_score(score)) == score
+    5.75
+    >>> parse_score(format_score(score)) == score == score_from_json(score_to_json(score))
     True
+    >>> adage = load_score("adage-developpe").performed()  # its repeat written out, to the left
+    >>> [str(adage.resolved()[index].feet.front) for index in (0, 9, -1)]
+    ['right', 'left', 'right']
 """
 
 from __future__ import annotations

@@ -15,12 +15,11 @@ from fractions import Fraction
 
 from enpointe.notation.frame import Frame
 from enpointe.notation.phrasing import Phrase, Repeat
+from enpointe.notation.resolving import FLOOR_LINE
 from enpointe.notation.score import Score
 from enpointe.notation.signs import Bend, FloorContact, Location, Side
 
 __all__ = ["Fault", "excluded_by", "faults", "faults_between", "frame_faults", "written_parts"]
-
-FLOOR_LINE = 1.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -115,11 +115,18 @@ def names(part: Part | None = None) -> tuple[str, ...]:
             f"{entry.name} {direction}{height}"
             for entry in LEGS
             for direction in entry.directions
-            for height in ([f" {each:g}" for each in _HEIGHTS] if entry.degrees else [""])
+            for height in _listed_heights(entry)
         )
     if part == "pose":
         return tuple(entry.name for entry in POSES)
     return tuple(f"{each} {name}" for each in get_args(Part) for name in names(each))
+
+
+def _listed_heights(entry: LegEntry) -> list[str]:
+    if entry.degrees is None:
+        return [""]
+    least, _, greatest = entry.degrees
+    return [f" {each:g}" for each in _HEIGHTS if least <= each <= greatest]
 
 
 def nearest(name: str, part: Part, count: int = 3) -> tuple[str, ...]:

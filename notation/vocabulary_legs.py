@@ -111,7 +111,7 @@ LEGS: tuple[LegEntry, ...] = (
         "the knee bent at a right angle; behind, it is higher than the foot",
         "Grant, attitude",
         (),
-        (45.0, 90.0, 120.0),
+        (60.0, 90.0, 110.0),
     ),
     LegEntry(
         "arabesque",
@@ -167,11 +167,12 @@ _FIXED = {
     ),
 }
 
-_OUTWARD = {_DEVANT: 40.0, _SECONDE: 90.0, _DERRIERE: 40.0}
-"""How far an attitude's thigh is from straight ahead or behind, towards the side, degrees: ours;
-at 40 the foot behind ends on the centre line."""
-_FOOT_SINKS = 10.0
-"""How far an attitude's shank sinks below level, degrees: the knee is higher than the foot."""
+_OUTWARD = {_DEVANT: 30.0, _SECONDE: 65.0, _DERRIERE: 40.0}
+"""How far an attitude's thigh is from straight ahead or behind, towards the side, degrees: ours. At
+40 the foot behind ends near the centre line, a little under the knee; to the side the thigh stays
+before the plane of the body, since no hip turns out the 90 degrees that would bring the foot up."""
+_TURNED_OUT = 60.0
+"""Outward turn of an attitude's thigh about itself, degrees (elite hips, 52, and the shin)."""
 
 
 def expand_leg(position: LegPosition, entry: LegEntry) -> LegSigns:
@@ -209,19 +210,38 @@ def _straight(direction: Direction, degrees: float) -> Sign:
 
 
 def _attitude(direction: Direction, degrees: float) -> LegSigns:
-    """Thigh t = (sin a sin p, -cos a) aside and up, p outward, and the shank at right angles to it.
+    """The thigh t raised by the degrees, and the shank where a turned-out knee bends to.
 
-    The shank is the level line at right angles to the thigh, inward, sunk by b from it: its share
-    aside is ``-cos b cos p - sin b cos a sin p``, upward ``-sin b sin a``.
+    A hanging knee faces ahead. Swung to t by the shortest way and turned out by e about t it faces
+    f; the shank of a right-angled knee points away from it, along -f.
     """
-    a, p, b = radians(degrees), radians(_OUTWARD[direction]), radians(_FOOT_SINKS)
-    knee_aside = _HIP_ASIDE + _THIGH * sin(a) * sin(p)
-    knee_up = _HIP - _THIGH * cos(a)
-    foot_aside = knee_aside - _SHANK * (cos(b) * cos(p) + sin(b) * cos(a) * sin(p))
-    foot_up = knee_up - _SHANK * sin(b) * sin(a)
-    knee = _sign(knee_aside, knee_up, _DEPTH[direction])
-    depth = Depth.FRONT if direction is _SECONDE else _DEPTH[direction]
-    return LegSigns(_sign(foot_aside, foot_up, depth), knee)
+    ahead = -1.0 if direction is _DERRIERE else 1.0
+    a, p, e = radians(degrees), radians(_OUTWARD[direction]), radians(_TURNED_OUT)
+    thigh = (ahead * sin(a) * cos(p), sin(a) * sin(p), -cos(a))
+    front, side = (_swung(axis, thigh) for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)))
+    shank = tuple(-cos(e) * f - sin(e) * s for f, s in zip(front, side, strict=True))
+    knee_ahead, knee_aside, knee_up = (_THIGH * t for t in thigh)
+    foot_ahead, foot_aside, foot_up = (
+        _THIGH * t + _SHANK * s for t, s in zip(thigh, shank, strict=True)
+    )
+    knee = _sign(_HIP_ASIDE + knee_aside, _HIP + knee_up, _depth(knee_ahead))
+    foot = _sign(_HIP_ASIDE + foot_aside, _HIP + foot_up, _depth(foot_ahead - knee_ahead))
+    return LegSigns(foot, knee)
+
+
+def _depth(ahead: float) -> Depth:
+    return Depth.FRONT if ahead >= 0.0 else Depth.BEHIND
+
+
+def _swung(
+    v: tuple[float, float, float], thigh: tuple[float, float, float]
+) -> tuple[float, float, float]:
+    """Where a direction goes by the shortest swing that takes straight down to `thigh`."""
+    wx, wy, share = thigh[1], -thigh[0], 1.0 / (1.0 - thigh[2])
+    x, y, z = v
+    cx, cy, cz = wy * z, -wx * z, wx * y - wy * x
+    dx, dy, dz = wy * cz, -wx * cz, wx * cy - wy * cx
+    return (x + cx + share * dx, y + cy + share * dy, z + cz + share * dz)
 
 
 def _sign(aside: float, up: float, depth: Depth) -> Sign:

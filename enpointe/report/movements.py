@@ -9,8 +9,7 @@ import numpy as np
 
 from enpointe.motion import Choreography, Motion
 from enpointe.motion.wrist import Profile
-from enpointe.notation import Side
-from enpointe.notation.score import ResolvedFrame
+from enpointe.notation import ResolvedFrame, Side
 from enpointe.notation.writer import format_beat
 
 __all__ = ["Movement", "danced_tempo", "movements"]

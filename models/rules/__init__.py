@@ -14,7 +14,12 @@ from enpointe.models.rules.arms import (
     StraightElbow,
     WristLine,
 )
-from enpointe.models.rules.balance import CentredWeight, ComInFlight, ComOverSupport
+from enpointe.models.rules.balance import (
+    CentredWeight,
+    ComInFlight,
+    ComOverSupport,
+    WeightOverTheFoot,
+)
 from enpointe.models.rules.base import Kind as Kind
 from enpointe.models.rules.base import Rule as Rule
 from enpointe.models.rules.base import Symbols as Symbols
@@ -67,7 +72,8 @@ def rules_for(target: PoseTarget) -> tuple[Rule, ...]:
     if target.com is not None:
         rules.append(ComInFlight())
     else:
-        rules += [ComOverSupport(), CentredWeight()]
+        bearing = sum(isinstance(leg, Standing | OnPointe) for leg in target.legs.values())
+        rules += [ComOverSupport(), CentredWeight() if bearing > 1 else WeightOverTheFoot()]
     if all(isinstance(leg, Standing) for leg in target.legs.values()):
         rules.append(FeetTurnedOutAlike())
     return tuple(rules)

@@ -78,8 +78,8 @@ class ElbowOnTheSlope(_ArmRule):
 class ElbowOutward(_ArmRule):
     """The elbow is on the outer or back side of the arm, never folded in towards the body.
 
-    (e - i) . v >= 0 with i the point of eq. 4.6 on the line shoulder-wrist and v towards the elbow's
-    place of eq. 4.7. The slope alone leaves both sides open.
+    (e - i) . v >= 0 with i the point of eq. 4.6 on the line shoulder-wrist and v towards the
+    elbow's place of eq. 4.7. The slope alone leaves both sides open.
     """
 
     name: ClassVar[str] = "elbow on the outer side"

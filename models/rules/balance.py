@@ -12,7 +12,14 @@ from enpointe.models.kinematics import SymbolicBody
 from enpointe.models.rules.base import Kind, Rule, Symbols
 from enpointe.models.target import PoseTarget
 
-__all__ = ["CentredWeight", "ComInFlight", "ComOverSupport", "centroid", "half_planes"]
+__all__ = [
+    "CentredWeight",
+    "ComInFlight",
+    "ComOverSupport",
+    "WeightOverTheFoot",
+    "centroid",
+    "half_planes",
+]
 
 _EDGES = 12
 
@@ -65,6 +72,15 @@ class CentredWeight(Rule):
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
         centre = centroid(target.support) if target.weight is None else target.weight
         return {"support_centre": centre}
+
+
+class WeightOverTheFoot(CentredWeight):
+    """On one foot the weight is near its middle; how near, the lifted leg decides."""
+
+    name: ClassVar[str] = "weight over the foot"
+    bound: ClassVar[float] = 70.0
+    weight: ClassVar[float] = 50.0
+    source: ClassVar[str] = "statics; the margin inside the sole is a rule of its own"
 
 
 class ComInFlight(Rule):

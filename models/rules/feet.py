@@ -161,16 +161,15 @@ class PointedFoot(SidedRule):
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
         leg = target.legs[Side(self.side)]
-        passing = isinstance(leg, InAir) and leg.foot is not None
-        angles = leg.foot if passing else np.radians(POINTED_DEG)
-        return {f"{self.side}_foot_angles": np.asarray(angles)}
+        passing = leg.foot if isinstance(leg, InAir) else None
+        return {f"{self.side}_foot_angles": np.radians(POINTED_DEG) if passing is None else passing}
 
 
 class FootOnItsWayToPoint(PointedFoot):
     """A passing foot rolls from flat to pointed and back, as far as the floor under it allows."""
 
     name: ClassVar[str] = "foot on its way to point"
-    bound: ClassVar[float] = 60.0
+    bound: ClassVar[float] = 45.0
     kind: ClassVar[Kind] = Kind.PREFER
     weight: ClassVar[float] = 2.0
 

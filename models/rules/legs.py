@@ -111,9 +111,9 @@ class FootOnItsWay(FootOnItsSign):
     """The ankle of a passing leg keeps to its way, as well as the floor lets it."""
 
     name: ClassVar[str] = "foot on its way"
-    bound: ClassVar[float] = 120.0
+    bound: ClassVar[float] = 60.0
     kind: ClassVar[Kind] = Kind.PREFER
-    weight: ClassVar[float] = 200.0
+    weight: ClassVar[float] = 300.0
     source: ClassVar[str] = "Neagle 2005 §5.2.1 (shortest path)"
 
 
@@ -146,7 +146,7 @@ class ToeOnTheFloor(SidedRule):
     unit: ClassVar[str] = "mm"
     bound: ClassVar[float] = 2.0
     kind: ClassVar[Kind] = Kind.EQUAL
-    source: ClassVar[str] = "Grant, battement tendu; benesh.md B9"
+    source: ClassVar[str] = "Grant, battement tendu"
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
         tip = body.site(f"{self.side}_toe_tip")
@@ -166,7 +166,7 @@ class ToeOnTheFloor(SidedRule):
         }
 
 
-TOE_THICKNESS = 0.008
+TOE_THICKNESS = 0.011
 """Bone to floor at the tip of a stretched toe, m."""
 
 
@@ -178,7 +178,7 @@ class ToeAtTheLeg(SidedRule):
     unit: ClassVar[str] = "mm"
     bound: ClassVar[float] = 2.0
     kind: ClassVar[Kind] = Kind.EQUAL
-    source: ClassVar[str] = "benesh.md B9 (retire: toe at the knee; cou-de-pied: at the ankle)"
+    source: ClassVar[str] = "Grant, retiré (toe at the knee) and cou-de-pied (at the ankle)"
     at: str = "knee"
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:

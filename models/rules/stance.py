@@ -64,7 +64,7 @@ class PelvisAsWritten(Rule):
     unit: ClassVar[str] = "deg"
     bound: ClassVar[float] = 5.0
     kind: ClassVar[Kind] = Kind.PREFER
-    weight: ClassVar[float] = 20.0
+    weight: ClassVar[float] = 40.0
     source: ClassVar[str] = "Neagle 2005 §4.2.2 (erect stance, hips not twisted)"
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:

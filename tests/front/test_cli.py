@@ -54,11 +54,9 @@ MALFORMED: dict[str, tuple[str | bytes, int]] = {
     "no feet": (START.replace("  feet: first\n", ""), 6),
     "not UTF-8": (START.replace("title: T", "title: à").encode("latin-1"), 2),
     "one endless line": ("benesh 1 " + "x" * 5000, 1),
-    "nobody on the floor": (
-        second("left foot: .2 wide, 2 high, front\n  right foot: .2 wide, 2 high, behind"),
-        9,
-    ),
 }
+ALOFT = second("left leg: pointed devant\n  right leg: pointed derrière")
+"""A frame with nobody on the floor, and no jump that leads there."""
 
 
 @pytest.fixture
@@ -116,6 +114,35 @@ def test_a_malformed_score_is_one_line_with_its_place(
     assert int(at) == line
     assert int(column) >= 1
     assert list(home.iterdir()) == []
+
+
+@pytest.mark.parametrize("verb", ["perform", "compare"])
+def test_nobody_stays_in_the_air_without_a_jump(
+    verb: str, home: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    score = tmp_path / "aloft.bmn"
+    score.write_text(ALOFT, "utf-8")
+    message = refused(capfd, verb, str(score), "--json")
+    assert message.startswith(f"enpointe: {score}:9:1: ")
+    assert "write 'jump: off ..., on ...'" in message
+    assert list(home.iterdir()) == []
+
+
+def test_a_pose_in_the_air_is_a_pose(
+    home: Path,
+    tmp_path: Path,
+    plain_report: list[object],
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    """Nothing holds her there, and nothing has to: a picture of a jump."""
+    score = tmp_path / "aloft.bmn"
+    score.write_text(ALOFT, "utf-8")
+    assert _run(["pose", str(score), "--json"]) == 0
+    poses = one_object(capfd.readouterr().out)["poses"]
+    assert isinstance(poses, list)
+    standing, aloft = ({rule["rule"] for rule in pose["rules"]} for pose in poses)
+    assert "centre of mass over the support" in standing - aloft
+    assert "left pointed foot" in aloft - standing
 
 
 def test_a_malformed_score_does_not_wait_for_the_engines(tmp_path: Path) -> None:

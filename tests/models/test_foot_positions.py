@@ -20,6 +20,7 @@ from enpointe.models.foot_positions import (
     footprints,
     support_hull,
 )
+from enpointe.models.leg_target import Standing
 from enpointe.models.rules.balance import centroid, half_planes
 from enpointe.notation import FeetPosition, Side, feet_signs
 
@@ -30,6 +31,7 @@ FIGURES = [Figure.of(dancer_model(body)) for body in DANCERS.values()]
 POSITIONS = [
     FeetPosition("first"),
     FeetPosition("second"),
+    *(FeetPosition("fourth", side, open=True) for side in Side),
     *(FeetPosition(name, side) for name in ("third", "fourth", "fifth") for side in Side),
 ]
 turnouts = st.floats(*TURNOUT_RANGE_DEG)
@@ -123,18 +125,32 @@ def test_the_front_heel_is_at_the_middle_of_the_back_foot_in_third(
 
 
 @given(figures, turnouts)
-def test_fourth_is_fifth_opened_by_a_foot_s_length(figure: Figure, turnout: float) -> None:
-    """§4.2.2: about one foot length, forward and back."""
+def test_fourth_is_fifth_opened_to_a_foot_s_length(figure: Figure, turnout: float) -> None:
+    """§4.2.2: about one foot length, front to back, opposite the fifth."""
     fourth, fifth = (
         footprints(figure, FeetPosition(name, Side.LEFT), turnout) for name in ("fourth", "fifth")
     )
     step = fourth[Side.LEFT].ankle - fourth[Side.RIGHT].ankle
     closed = fifth[Side.LEFT].ankle - fifth[Side.RIGHT].ankle
     assert step[1] == pytest.approx(closed[1])
-    opened = (step[0] - closed[0]) / figure.foot_length
-    assert 0.6 < opened < 1.1
-    if turnout > 65:
-        assert step[0] == pytest.approx(figure.foot_length, rel=0.25)
+    assert step[0] == pytest.approx(figure.foot_length)
+    assert step[0] > closed[0] + 0.05
+
+
+@given(figures, turnouts, st.sampled_from(Side))
+def test_open_fourth_is_a_foot_s_length_before_the_other_heel(
+    figure: Figure, turnout: float, front: Side
+) -> None:
+    """Ouverte: opposite the first, heel before heel, where the crossed one is before the toe."""
+    spread, crossed = (
+        footprints(figure, FeetPosition("fourth", front, open=is_open), turnout)
+        for is_open in (True, False)
+    )
+    step = spread[front].ankle - spread[front.other].ankle
+    assert np.allclose(step, [figure.foot_length, 0.0])
+    across = crossed[front].ankle - crossed[front.other].ankle
+    if turnout > 50:  # feet turned out less stand side by side when their edges touch
+        assert across[1] * (1 if front is Side.LEFT else -1) < 0
 
 
 @given(figures, st.sampled_from(("third", "fourth", "fifth")), turnouts)
@@ -186,10 +202,10 @@ def test_the_signs_of_a_named_position_put_the_feet_near_it(position: FeetPositi
     except ScoreError as error:
         pytest.fail(str(error))
     apart = named[Side.LEFT].ankle - named[Side.RIGHT].ankle
-    left, right = (target.legs[side].footprint for side in Side)
-    assert left is not None
-    assert right is not None
-    meant = left.ankle - right.ankle
+    left, right = (target.legs[side] for side in Side)
+    assert isinstance(left, Standing)
+    assert isinstance(right, Standing)
+    meant = left.footprint.ankle - right.footprint.ankle
     assert np.linalg.norm(apart - meant) < 0.1
 
 

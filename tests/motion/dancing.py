@@ -26,6 +26,9 @@ from enpointe.sim.body import SimulatedBody
 from enpointe.sim.measures import Measures, measure
 
 SCORES = shipped_scores()
+PORTS_DE_BRAS = ("first-port-de-bras", "third-port-de-bras", "fourth-port-de-bras")
+"""On both feet throughout: what PD dances under gravity. The others leave the floor or stand on one
+leg, where it falls; they move kinematically."""
 EFFORTS = tuple(PRESETS)
 
 TINY = """
@@ -74,9 +77,21 @@ def solved(text: str) -> Choreography:
     return solve_key_poses(score, solver())
 
 
+def timed(chosen: Choreography, tempo: float) -> Choreography:
+    """At another tempo; where nothing jumps, the poses stay what they are."""
+    score = chosen.score
+    stations = []
+    for station in chosen.stations:
+        assert station.frame is not None
+        assert station.flight is None
+        beat = score.frames[station.frame].beat
+        stations.append(replace(station, time=score.seconds(beat, tempo)))
+    return replace(chosen, stations=tuple(stations), tempo=tempo)
+
+
 @cache
 def choreography(score: str, preset: str) -> Choreography:
-    return replace(solved(score), tempo=PRESETS[preset].tempo)
+    return timed(solved(score), PRESETS[preset].tempo)
 
 
 @cache
@@ -144,7 +159,7 @@ class Danced:
 
 @cache
 def danced(score: str, preset: str) -> Danced:
-    """A shipped score danced by PD under gravity, with an onlooker."""
+    """A port de bras danced by PD under gravity, with an onlooker."""
     reference = motion(score, preset)
     body = WatchedBody.at_start_of(reference)
     assert isinstance(body, WatchedBody)

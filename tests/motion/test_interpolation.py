@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import pairwise
 
 import mujoco
@@ -20,12 +19,13 @@ from enpointe.notation import load_score, parse_score
 
 from .dancing import (
     EFFORTS,
-    SCORES,
+    PORTS_DE_BRAS,
     choreography,
     motion,
     sites,
     solved,
     solver,
+    timed,
     written_score,
 )
 
@@ -98,7 +98,7 @@ def test_each_frame_is_an_event_at_its_time(kind: str) -> None:
     assert [e.beat for e in reference.key_events] == [float(b) for b in range(9)]
 
 
-@pytest.mark.parametrize("score", SCORES)
+@pytest.mark.parametrize("score", PORTS_DE_BRAS)
 def test_planted_feet_stay_planted(score: str) -> None:
     for preset in ("happy", "sad"):
         places = sole_places(motion(score, preset))
@@ -108,7 +108,7 @@ def test_planted_feet_stay_planted(score: str) -> None:
 
 @pytest.mark.slow
 @every_preset
-@pytest.mark.parametrize("score", SCORES)
+@pytest.mark.parametrize("score", PORTS_DE_BRAS)
 def test_the_rules_hold_on_the_way_too(score: str, preset: str) -> None:
     seen = set()
     for start, end in pairwise(solved(score).key_poses):
@@ -148,7 +148,7 @@ def test_the_baseline_has_corners() -> None:
 
 def test_repeated_phrases_are_danced_alike() -> None:
     """Tempo 60 puts every beat on a sample, so that equal phrases must have equal numbers."""
-    chosen = replace(solved(THIRD), tempo=60.0)
+    chosen = timed(solved(THIRD), 60.0)
     reference = interpolate(chosen, PRESETS["happy"].effort)
     begin, phrase = int(COUNT_IN * RATE), int(4 * RATE)
     margin = int(ROUNDING * RATE)
@@ -161,10 +161,8 @@ def test_repeated_phrases_are_danced_alike() -> None:
 @given(st.sampled_from([30.0, 50.0, 75.0, 100.0]))
 def test_time_scales_with_tempo(tempo: float) -> None:
     """Half the tempo is the same way at half the speed (by slerp, which rounds nothing)."""
-    slow = interpolate(replace(solved(THIRD), tempo=tempo), Effort(-3, 0.5, 1), Interpolation.SLERP)
-    fast = interpolate(
-        replace(solved(THIRD), tempo=2 * tempo), Effort(-3, 0.5, 1), Interpolation.SLERP
-    )
+    slow = interpolate(timed(solved(THIRD), tempo), Effort(-3, 0.5, 1), Interpolation.SLERP)
+    fast = interpolate(timed(solved(THIRD), 2 * tempo), Effort(-3, 0.5, 1), Interpolation.SLERP)
     for t in np.linspace(0, 8 * 30 / tempo, 50):
         np.testing.assert_allclose(
             fast.sample(COUNT_IN + t)[0], slow.sample(COUNT_IN + 2 * t)[0], atol=0.02
@@ -183,7 +181,7 @@ def test_the_same_score_gives_the_same_motion_bit_for_bit() -> None:
 
 
 def test_space_changes_the_path_and_time_does_not() -> None:
-    chosen = replace(solved("first-port-de-bras"), tempo=60.0)
+    chosen = timed(solved("first-port-de-bras"), 60.0)
     direct, indirect, sudden = (
         interpolate(chosen, effort)
         for effort in (Effort(-2.5, 0.5, 1), Effort(-2.5, 0.5, 0), Effort(-4.0, 0.5, 1))

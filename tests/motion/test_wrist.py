@@ -11,7 +11,8 @@ from enpointe.motion import PRESETS, fit_logistic, logistic, wrist_profiles
 from enpointe.motion.wrist import Profile
 from enpointe.notation import Side
 
-from .dancing import EFFORTS, SCORES, choreography, danced, motion
+from .dancing import EFFORTS, PORTS_DE_BRAS, choreography, danced, motion
+from .floor import dance
 
 
 def profile(b: float, x0: float, samples: int, noise: np.ndarray | float = 0.0) -> Profile:
@@ -79,7 +80,7 @@ def test_profiles_run_from_nought_to_one() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("preset", EFFORTS)
-@pytest.mark.parametrize("score", SCORES)
+@pytest.mark.parametrize("score", PORTS_DE_BRAS)
 def test_the_expressive_wrist_has_the_effort_that_was_asked(score: str, preset: str) -> None:
     fit, effort = fit_logistic(wrist_profiles(motion(score, preset))), PRESETS[preset].effort
     assert fit is not None
@@ -88,7 +89,16 @@ def test_the_expressive_wrist_has_the_effort_that_was_asked(score: str, preset: 
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("score", SCORES)
+@pytest.mark.parametrize("score", ["adage-developpe", "temps-lie-grand-battement"])
+def test_legs_do_not_change_the_effort_of_the_arms(score: str) -> None:
+    fit, effort = fit_logistic(wrist_profiles(dance(score).motion)), PRESETS["natural"].effort
+    assert fit is not None
+    assert fit.time == pytest.approx(effort.time, abs=0.1)
+    assert fit.weight == pytest.approx(effort.weight, abs=0.02)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("score", PORTS_DE_BRAS)
 def test_danced_under_gravity_the_presets_stay_in_order(score: str) -> None:
     """Table 5.3's order in tempo and time, and natural where its own numbers put it."""
     fits, seconds = {}, {}

@@ -114,33 +114,49 @@ def some(values: st.SearchStrategy[Value]) -> st.SearchStrategy[dict[Side, Value
     return st.dictionaries(sides, values, max_size=2)
 
 
+def maybe(values: st.SearchStrategy[Value]) -> st.SearchStrategy[Value | None]:
+    """A value, or nothing written."""
+    return st.none() | values
+
+
+flags = st.booleans()
+plain_signs, hand_signs = signs(), signs(straight=True)
+some_signs, some_hands = some(plain_signs), some(hand_signs)
+some_contacts, some_legs = some(contacts), some(legs)
+some_supports, some_steps = some(supports), some(steps)
+some_paths = st.dictionaries(st.sampled_from(Limb), paths, max_size=4)
+maybe_oriented, maybe_posed = maybe(orientations), maybe(poses)
+maybe_placed, maybe_travelled, maybe_turned = maybe(places), maybe(travels), maybe(turns)
+maybe_facing = maybe(st.builds(Facing, bearings))
+
+
 @st.composite
 def _arms_of(draw: st.DrawFn, first: bool) -> Frame:
     """The arms of a frame: a name, or signs; of the first frame, both."""
-    if draw(st.booleans()):
+    if draw(flags):
         return Frame(Fraction(0), arms=draw(arms))
-    hands = draw(some(signs(straight=True)))
-    touching = draw(some(contacts))
+    hands = draw(some_hands)
+    touching = draw(some_contacts)
     if first:
-        hands |= {side: draw(signs()) for side in Side if side not in {**hands, **touching}}
+        hands |= {side: draw(plain_signs) for side in Side if side not in {**hands, **touching}}
     straight = {side for side, sign in hands.items() if sign.straight}
-    elbows = {side: sign for side, sign in draw(some(signs())).items() if side not in straight}
+    elbows = {side: sign for side, sign in draw(some_signs).items() if side not in straight}
     return Frame(Fraction(0), hands=hands, contacts=touching, elbows=elbows)
 
 
 @st.composite
 def _legs_of(draw: st.DrawFn, first: bool) -> Frame:
     """The legs of a frame: a name for both feet, or for each leg a name, signs or a stance."""
-    if draw(st.booleans()):
-        frame = Frame(Fraction(0), feet=draw(feet), support=draw(some(supports)))
+    if draw(flags):
+        frame = Frame(Fraction(0), feet=draw(feet), support=draw(some_supports))
     else:
-        working = draw(some(legs))
-        foot_signs = {s: v for s, v in draw(some(signs())).items() if s not in working}
-        floor = {s: replace(v, height=1.0) for s, v in foot_signs.items() if draw(st.booleans())}
+        working = draw(some_legs)
+        foot_signs = {s: v for s, v in draw(some_signs).items() if s not in working}
+        floor = {s: replace(v, height=1.0) for s, v in foot_signs.items() if draw(flags)}
         foot_signs |= floor
         standing = {
             side: stance
-            for side, stance in draw(some(supports)).items()
+            for side, stance in draw(some_supports).items()
             if side not in working and side not in foot_signs.keys() - floor.keys()
         }
         if first:
@@ -149,7 +165,7 @@ def _legs_of(draw: st.DrawFn, first: bool) -> Frame:
         frame = Frame(Fraction(0), legs=working, foot_signs=foot_signs, support=standing)
     knees = {
         side: sign
-        for side, sign in draw(some(signs())).items()
+        for side, sign in draw(some_signs).items()
         if side not in frame.legs
         and (side not in frame.support or frame.support[side].bend is Bend.STRAIGHT)
     }
@@ -161,10 +177,10 @@ def frames(draw: st.DrawFn, beat: Fraction, before: Fraction | None = None) -> F
     """A frame without contradictions; without one before it, it gives all limbs."""
     first = before is None
     upper, lower = draw(_arms_of(first)), draw(_legs_of(first))
-    turn = None if first else draw(st.none() | turns)
-    travel = None if first else draw(st.none() | travels)
+    turn = None if first else draw(maybe_turned)
+    travel = None if first else draw(maybe_travelled)
     jump = None
-    if before is not None and draw(st.booleans()):
+    if before is not None and draw(flags):
         jump = Jump(before, draw(st.sampled_from([beat, (before + beat) / 2])))
         if jump.on.denominator > 96:
             jump = Jump(before, beat)
@@ -175,16 +191,16 @@ def frames(draw: st.DrawFn, beat: Fraction, before: Fraction | None = None) -> F
         hands=upper.hands,
         elbows=upper.elbows,
         contacts=upper.contacts,
-        head=draw(st.none() | orientations),
-        body=draw(st.none() | orientations),
-        pelvis=draw(st.none() | orientations),
-        pose=draw(st.none() | poses),
-        facing=draw(st.none() | st.builds(Facing, bearings)) if turn is None else None,
+        head=draw(maybe_oriented),
+        body=draw(maybe_oriented),
+        pelvis=draw(maybe_oriented),
+        pose=draw(maybe_posed),
+        facing=draw(maybe_facing) if turn is None else None,
         turn=turn,
-        place=draw(st.none() | places) if travel is None else None,
+        place=draw(maybe_placed) if travel is None else None,
         travel=travel,
-        paths={} if first else draw(st.dictionaries(st.sampled_from(Limb), paths, max_size=4)),
-        locomotion={} if first else draw(some(steps)),
+        paths={} if first else draw(some_paths),
+        locomotion={} if first else draw(some_steps),
         jump=jump,
     )
 
@@ -194,15 +210,15 @@ def _repeats(draw: st.DrawFn, counts: int) -> tuple[Repeat, ...]:
     """Repeats one after another within so many counts."""
     found: list[Repeat] = []
     free = 1
-    while free <= counts and draw(st.booleans()):
+    while free <= counts and draw(flags):
         first = draw(st.integers(free, counts))
         last = draw(st.integers(first, counts))
         end = last
         endings: tuple[tuple[int, int], ...] = ()
-        if first < last < counts and draw(st.booleans()):
+        if first < last < counts and draw(flags):
             end = draw(st.integers(last + 1, counts))
             endings = ((draw(st.integers(first + 1, last)), last), (last + 1, end))
-        times, other_side = draw(st.integers(1, 4)), draw(st.booleans())
+        times, other_side = draw(st.integers(1, 4)), draw(flags)
         found.append(Repeat(first, last, times, other_side, endings))
         free = end + 1
     return tuple(found)
@@ -228,7 +244,7 @@ def _phrases(draw: st.DrawFn, repeats: tuple[Repeat, ...]) -> tuple[Phrase, ...]
 
 
 @st.composite
-def scores(draw: st.DrawFn, max_frames: int = 8) -> Score:
+def scores(draw: st.DrawFn, max_frames: int = 4) -> Score:
     """A whole valid score."""
     drawn = [draw(frames(Fraction(0)))]
     for step in draw(st.lists(beat_steps, max_size=max_frames - 1)):

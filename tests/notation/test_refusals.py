@@ -16,7 +16,7 @@ def frame(lines: str) -> str:
     return f"{START}beat 1:\n{lines}\n"
 
 
-WRONG = {
+WRONG: dict[str, tuple[str | bytes, int, int, str]] = {
     "no header": ("title: T\n", 1, 1, "benesh 1"),
     "empty": ("", 1, 1, "empty"),
     "only blanks": (" \n\t\n", 1, 1, "empty"),

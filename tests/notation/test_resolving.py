@@ -92,8 +92,9 @@ def test_a_pose_is_all_its_parts_and_the_frame_is_over_it() -> None:
         "pose: first arabesque on left; left leg: demi-plié; right hand: 1 wide, 4 high, level; "
         "face: audience",
     )
-    assert plain.legs[Side.RIGHT].named is not None
-    assert plain.legs[Side.RIGHT].named.name == "arabesque"
+    working = plain.legs[Side.RIGHT].named
+    assert working is not None
+    assert working.name == "arabesque"
     assert plain.arms[Side.RIGHT].named is not None
     assert plain.head.turn < 0
     assert plain.facing_degrees == 90.0
@@ -150,7 +151,8 @@ def test_what_happens_on_the_way_does_not_hold() -> None:
     assert arriving.paths
     assert arriving.locomotion
     assert arriving.jump is not None
-    assert after.turn is after.jump is after.travel is None
+    assert after.turn is None
+    assert after.jump is None
     assert not after.paths
     assert not after.locomotion
 

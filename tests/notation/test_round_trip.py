@@ -48,7 +48,7 @@ SCRAPS = [
     *("left", "fifth", "à", "leads", "erect", "on hip", "by a circle", "demi-plié", "retiré", "m"),
     *("\ufeff", "\u2028", "\0", "corner 1", "towards", "curving left", "touching", "open"),
 ]
-WITH_ALL_HEALTH = {"deadline": None, "suppress_health_check": list(HealthCheck)}
+MANY = settings(max_examples=10_000, deadline=None, suppress_health_check=list(HealthCheck))
 
 
 def refusal(text: str) -> ScoreError | None:
@@ -84,7 +84,7 @@ def test_what_is_performed_and_the_other_side_are_scores_too(score: Score) -> No
 
 
 @pytest.mark.slow
-@settings(max_examples=10_000, **WITH_ALL_HEALTH)
+@settings(MANY)
 @given(scores(max_frames=4))
 def test_ten_thousand_scores_read_back(score: Score) -> None:
     """The same for many more scores."""
@@ -132,7 +132,7 @@ def test_mutated_bytes_are_read_or_refused(name: str, data: st.DataObject) -> No
 
 
 @pytest.mark.slow
-@settings(max_examples=1000, **WITH_ALL_HEALTH)
+@settings(MANY, max_examples=1000)
 @given(scores(max_frames=3), st.integers(0, 2**32))
 def test_a_hundred_thousand_mutants_are_read_or_refused(score: Score, seed: int) -> None:
     """A hundred mutants of each of a thousand scores raise a ScoreError or nothing."""

@@ -21,7 +21,7 @@ from enpointe.motion.arrival import danced_tempo
 from enpointe.sim.body import SimulatedBody
 from enpointe.sim.measures import measure
 
-from ..motion.dancing import EFFORTS, SCORES, danced, motion, solved, solver
+from ..motion.dancing import EFFORTS, PORTS_DE_BRAS, danced, motion, solved, solver
 
 Array = NDArray[np.float64]
 MODEL = solver().model
@@ -29,7 +29,7 @@ FIRST_POSE = solved("first-port-de-bras").key_poses[0].qpos
 QUICK = {("third-port-de-bras", "happy"), ("first-port-de-bras", "angry")}
 DANCES = [
     pytest.param(score, preset, marks=() if (score, preset) in QUICK else pytest.mark.slow)
-    for score in SCORES
+    for score in PORTS_DE_BRAS
     for preset in EFFORTS
 ]
 
