@@ -138,11 +138,7 @@ def test_a_guess_near_by_leads_to_the_same_pose(
 
 @pytest.mark.parametrize(
     ("name", "index"),
-    [
-        pytest.param(name, index, id=f"{name} {index}")
-        for name, index in SHIPPED
-        if index > 0
-    ],
+    [pytest.param(name, index, id=f"{name} {index}") for name, index in SHIPPED if index > 0],
 )
 def test_the_pose_before_leads_to_the_same_pose(
     name: str, index: int, pose: Callable[[str, int], KeyPose], solver: KeyPoseSolver
