@@ -1,10 +1,10 @@
 """The named positions of ballet, each a macro over the signs of the stave.
 
-The numbers of an arm stand once, in :data:`ARM_PLACES`; a position of the arms says which place each
-arm takes. They were chosen by eye on a dancer of 1.68 m, whose lines are at 0.49, 1.03, 1.33, 1.68 and
-1.85 m and whose full reach is 0.68 m, so that every place is within reach, in front where it says
-front. No source prints them as numbers: what the sources say in words is quoted with each place, the
-figures are ours.
+The numbers of an arm stand once, in :data:`ARM_PLACES`; a position of the arms says which place
+each arm takes. They were chosen by eye on a dancer of 1.68 m, whose lines are at 0.49, 1.03, 1.33,
+1.68 and 1.85 m and whose full reach is 0.68 m, so that every place is within reach, in front where
+it says front. No source prints them as numbers: what the sources say in words is quoted with each
+place, the figures are ours.
 
 Sources, by their short names: Neagle 2005 (the thesis); ABT (American Ballet Theatre's dictionary,
 after Grant); Grant (Technical Manual and Dictionary of Classical Ballet).
