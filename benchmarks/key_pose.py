@@ -7,6 +7,7 @@ pose, mink alone on the same tasks: for as many steps as bring feet and wrists w
 the 40 steps of the seed. Run it on a quiet machine:
 
     python benchmarks/key_pose.py
+    python benchmarks/key_pose.py --sources vocabulary
     python benchmarks/key_pose.py --repeats 9 --json
 """
 
@@ -34,11 +35,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from enpointe.models import Certificate, KeyPoseSolver, PoseTarget, dancer_model, pose_target
+from enpointe.models import Certificate, KeyPoseSolver, PoseTarget, Style, dancer_model, pose_target
 from enpointe.models.keypose import PoseProblem
+from enpointe.models.leg_target import InAir, OnPointe, Standing, ToeOnLeg
 from enpointe.models.rules import Kind, rules_for
+from enpointe.models.rules.legs import TOE_THICKNESS
 from enpointe.models.seed import SEED_STEPS, differential_ik
-from enpointe.notation import Side, load_score, shipped_scores
+from enpointe.models.stances import StanceTracker
+from enpointe.notation import Side, load_score, names, shipped_scores
+from enpointe.posing import vocabulary_score
 
 NEAR = 2e-3
 """What "there" means for mink alone: feet and wrists within this, m."""
@@ -76,7 +81,7 @@ class Leftover:
 
 @dataclass(slots=True)
 class Pose:
-    """One shipped key pose and what was measured on it; times in ms."""
+    """One key pose and what was measured on it; times in ms."""
 
     name: str
     target: PoseTarget
@@ -89,40 +94,76 @@ class Pose:
     iterations: int = 0
 
 
-def shipped_poses(solver: KeyPoseSolver) -> Iterator[Pose]:
-    """Every key pose of every shipped score."""
-    for name in shipped_scores():
-        for frame in load_score(name).resolved():
-            target = pose_target(frame, solver.figure)
-            yield Pose(
-                name=f"{name}, beat {frame.beat}",
-                target=target,
-                problem=solver.problem(target),
-                steps=steps_until_near(solver.model, target),
-                whole=[],
-                polish=[],
-                seed=[],
-                near=[],
-            )
+def named(solver: KeyPoseSolver, sources: str) -> Iterator[tuple[str, PoseTarget]]:
+    """Names and targets: every key pose that is shipped, every position on both dancers, or all."""
+    if sources in ("shipped", "all"):
+        for name in shipped_scores():
+            tracker = StanceTracker(solver.figure, Style().turnout_deg)
+            for frame in load_score(name).resolved():
+                ground = tracker.follow(frame)
+                yield (
+                    f"{name}, beat {frame.beat}",
+                    pose_target(frame, solver.figure, ground=ground),
+                )
+    if sources in ("vocabulary", "all"):
+        for name in names():
+            score = vocabulary_score(name)
+            assert score is not None
+            for style in (Style(), Style(real=True)):
+                dancer = "real" if style.real else "perfect"
+                target = pose_target(score.resolved()[0], solver.figure, style)
+                yield f"{name}, {dancer}", target
+
+
+def poses_of(solver: KeyPoseSolver, sources: str) -> Iterator[Pose]:
+    """What is timed."""
+    for name, target in named(solver, sources):
+        yield Pose(
+            name=name,
+            target=target,
+            problem=solver.problem(target),
+            steps=steps_until_near(solver.model, target),
+            whole=[],
+            polish=[],
+            seed=[],
+            near=[],
+        )
 
 
 def distance_left(configuration: mink.Configuration, target: PoseTarget) -> float:
     """How far the feet and wrists are from their places, the farthest of them, m."""
     data = configuration.data
-    torso, pelvis = data.body("torso"), data.body("pelvis")
+    torso = data.body("torso")
     errors = []
     for side in Side:
-        wrist, ankle = data.site(f"{side}_wrist").xpos, data.site(f"{side}_ankle").xpos
-        leg = target.legs[side]
+        wrist = data.site(f"{side}_wrist").xpos
         local = torso.xmat.reshape(3, 3).T @ (wrist - torso.xpos)
         errors.append(np.linalg.norm(local - target.arms[side].wrist))
-        if leg.footprint is not None:
-            height = -configuration.model.site(f"{side}_heel").pos[2]
-            errors.append(np.linalg.norm(ankle - [*leg.footprint.ankle, height]))
-        if leg.ankle is not None:
-            local = pelvis.xmat.reshape(3, 3).T @ (ankle - pelvis.xpos)
-            errors.append(np.linalg.norm(local - leg.ankle))
+        errors.append(foot_left(configuration, target, side))
     return float(max(errors))
+
+
+def foot_left(configuration: mink.Configuration, target: PoseTarget, side: Side) -> float:
+    """How far one foot is from its place: the ball or tip on the floor, the ankle in the air, m."""
+    data, figure, leg = configuration.data, target.figure, target.legs[side]
+    tip = data.site(f"{side}_toe_tip").xpos
+    if isinstance(leg, Standing):
+        height = -configuration.model.site(f"{side}_toe_tip").pos[2]
+        mark = [*leg.footprint.point(figure.ball_forward), height]
+        return float(np.linalg.norm(data.body(f"{side}_toe").xpos - mark))
+    if isinstance(leg, OnPointe):
+        mark = [*leg.footprint.point(figure.ball_forward + figure.toe_length), 0.0]
+        return float(np.linalg.norm(tip - mark))
+    if isinstance(leg, InAir):
+        ankle = data.site(f"{side}_ankle").xpos - data.site(f"{side}_hip").xpos
+        return float(np.linalg.norm(target.upright.T @ ankle - leg.ankle + figure.hips[side]))
+    if isinstance(leg, ToeOnLeg):
+        gap = target.upright.T @ (tip - data.site(f"{side.other}_{leg.site}").xpos)
+        outward = 1.0 if side is Side.LEFT else -1.0
+        ahead, aside, up = leg.offset
+        return float(np.linalg.norm(gap - [ahead, outward * aside, up]))
+    place = target.upright.T @ (tip - data.body("pelvis").xpos)
+    return float(np.hypot(tip[2] - TOE_THICKNESS, np.dot(leg.across, place[:2])))
 
 
 def steps_until_near(model: mujoco.MjModel, target: PoseTarget) -> int | None:
@@ -177,8 +218,9 @@ def timing(poses: list[Pose], way: str) -> Timing | None:
 
 def certificate_of(pose: Pose, qpos: NDArray[np.float64]) -> Certificate:
     """Every rule of the pose, measured at any configuration."""
-    vector = Rotation.from_quat(qpos[3:7], scalar_first=True).as_rotvec()
-    unknowns = np.concatenate([qpos[:3], vector, qpos[7:]])
+    upright = Rotation.from_euler("z", pose.target.facing)
+    turned = upright.inv() * Rotation.from_quat(qpos[3:7], scalar_first=True)
+    unknowns = np.concatenate([qpos[:3], turned.as_rotvec(), qpos[7:]])
     return pose.problem.certify(unknowns, pose.problem.parameters(pose.target))
 
 
@@ -227,9 +269,9 @@ def machine() -> str:
     return f"{os.cpu_count()} x {cpu}, {platform.system()}"
 
 
-def report(repeats: int) -> dict[str, object]:
+def report(repeats: int, sources: str) -> dict[str, object]:
     solver = KeyPoseSolver(dancer_model())
-    poses = list(shipped_poses(solver))
+    poses = list(poses_of(solver, sources))
     builds = build_times(solver, poses)
     measure(solver, poses, repeats)
     reached = [(pose, pose.steps) for pose in poses if pose.steps is not None]
@@ -257,6 +299,7 @@ def report(repeats: int) -> dict[str, object]:
         "machine": machine(),
         "versions": {name: version(name) for name in ("mujoco", "casadi", "mink", "daqp")},
         "python": platform.python_version(),
+        "sources": sources,
         "poses": len(poses),
         "repeats": repeats,
         "build_ms": {
@@ -297,7 +340,7 @@ def table(found: dict) -> str:
         ("mink alone, until < 2 mm", "mink_until_near_ms", "left_by_mink_until_near"),
     ]
     lines = [
-        f"{found['poses']} shipped key poses, cold, {found['repeats']} repeats each; "
+        f"{found['poses']} key poses ({found['sources']}), cold, {found['repeats']} repeats each; "
         f"{found['machine']}",
         ", ".join(f"{name} {number}" for name, number in found["versions"].items())
         + f", Python {found['python']}",
@@ -344,10 +387,16 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--repeats", type=int, default=5, help="timings of each pose (default 5)")
     parser.add_argument("--json", action="store_true", help="one JSON object instead of the table")
+    parser.add_argument(
+        "--sources",
+        choices=("shipped", "vocabulary", "all"),
+        default="all",
+        help="which poses (default all)",
+    )
     arguments = parser.parse_args()
     if arguments.repeats < 1:
         parser.error("--repeats must be at least 1")
-    found = report(arguments.repeats)
+    found = report(arguments.repeats, arguments.sources)
     print(json.dumps(found, indent=2) if arguments.json else table(found))
 
 

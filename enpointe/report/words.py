@@ -55,7 +55,7 @@ _FIGURES = (
         "fell_at",
         "Fell at",
         lambda v: f"{v:.2f} s",
-        "When the performance stopped, from the start.",
+        "The last moment at which the weight was over the feet.",
     ),
     _Figure(
         "root_force_max",
@@ -113,20 +113,24 @@ def verdict(performance: Performance) -> tuple[str, bool | None]:
         )
     else:
         root = "Nothing held the dancer up: the force on the root was 0 N throughout."
-    if recording.fault is None:
+    if performance.completed:
         text = (
             f"A physical dance under gravity, completed: {performance.danced.duration:.1f} s "
             f"on the dancer's own feet. {root}"
         )
         return text, measures.root_force_max <= HELD_UP
-    moment = f"{measures.fell_at or 0.0:.2f} s"
-    if recording.fault == "fell":
-        happened = f"the dancer fell, and was down at {moment}"
+    left = f"her weight left her feet at {measures.fell_at or 0.0:.2f} s"
+    stopped = f"{float(recording.time[-1]):.2f} s"
+    if recording.fault is None:
+        happened = f"the dancer was falling at the end; {left}"
+    elif recording.fault == "fell":
+        happened = f"the dancer fell: {left} and she was down at {stopped}"
     else:
-        happened = f"{recording.fault} at {moment}"
+        happened = f"{recording.fault} at {stopped}; {left}"
     whole = performance.motion.duration
     return (
-        f"A physical dance under gravity, not completed: {happened} of {whole:.1f} s. {root}",
+        f"A physical dance under gravity, not completed: {happened}, "
+        f"in a dance of {whole:.1f} s. {root}",
         False,
     )
 

@@ -21,12 +21,8 @@ from enpointe.motion.npz import load_motion
 from enpointe.notation import Score, Side, load_score, names, parse_score, shipped_scores
 
 from ..motion.dancing import written_score
+from .commands import SHORT
 
-SHORT = written_score(
-    "feet: fifth right front; arms: fifth en bas",
-    "arms: à la seconde; head: turn right 20",
-    tempo=90,
-)
 PHYSICAL = (
     "completed",
     "fell_at",

@@ -47,12 +47,21 @@ def fallen(physical: Performance) -> Performance:
         channels={name: array[:kept] for name, array in recording.channels.items()},
         **{name: getattr(recording, name)[:kept] for name in arrays},
     )
-    figures = ("com", "cop", "margin", "foot_force", "slip", "error", "torque_fraction")
+    figures = (
+        "com",
+        "cop",
+        "margin",
+        "capture_margin",
+        "foot_force",
+        "slip",
+        "error",
+        "torque_fraction",
+    )
     margin = measures.margin[:kept].copy()
     margin[-5:] = -float("inf")
     less = dataclasses.replace(
         measures,
-        fell_at=float(cut.time[-1]),
+        fell_at=float(cut.time[-6]),
         **{name: getattr(measures, name)[:kept] for name in figures} | {"margin": margin},
     )
     return dataclasses.replace(physical, recording=cut, measures=less)

@@ -187,7 +187,22 @@ def test_the_verdict_comes_first_and_is_honest(
     said = words_of(verdict(read(reports["fallen"]["report"])))
     assert "not completed" in said
     assert fallen.measures is not None
-    assert f"{fallen.measures.fell_at:.2f} s" in said
+    assert fallen.recording is not None
+    assert f"left her feet at {fallen.measures.fell_at:.2f} s" in said
+    assert f"down at {fallen.recording.time[-1]:.2f} s" in said
+
+
+def test_who_topples_at_the_end_has_not_completed(physical: Performance, tmp_path: Path) -> None:
+    """No fault stopped the dance, but its figures say that she no longer stood."""
+    assert physical.measures is not None
+    toppling = dataclasses.replace(
+        physical, measures=dataclasses.replace(physical.measures, fell_at=1.25)
+    )
+    page = read(write_report(toppling, tmp_path, video=False)["report"])
+    said = words_of(verdict(page))
+    assert "not completed" in said
+    assert "falling at the end; her weight left her feet at 1.25 s" in said
+    assert verdict(page).attrib["class"] == "bad"
 
 
 def test_help_on_the_root_is_told(physical: Performance, tmp_path: Path) -> None:

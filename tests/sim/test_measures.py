@@ -121,6 +121,49 @@ def test_a_fall_is_dated_by_the_last_sample() -> None:
     assert measure(replace(standing(), fault="fell")).fell_at == pytest.approx(499 * PERIOD)
 
 
+def drifting(speed: float, *, start: int = 100) -> Recording:
+    """The statue's weight wanders forwards from a sample on, at `speed` m/s."""
+    recording = standing()
+    com = np.array(recording.channels["com"])
+    com[start:, 0] += speed * PERIOD * np.arange(len(com) - start)
+    return changed(recording, com=com)
+
+
+def test_weight_that_ends_outside_the_feet_has_fallen_when_it_left_them() -> None:
+    figures = measure(drifting(0.4))
+    outside = np.flatnonzero(figures.margin < 0.0)
+    assert 100 < outside[0] < 499
+    assert figures.fell_at == pytest.approx((outside[0] - 1) * PERIOD)
+
+
+def test_weight_that_is_still_inside_but_too_fast_has_fallen() -> None:
+    """The capture point, c + c' sqrt(h / g), is out before the weight is (Hof et al. 2005)."""
+    figures = measure(drifting(0.3, start=490))
+    assert figures.margin.min() > 0.0
+    assert figures.capture_margin[-1] < -0.005
+    assert figures.fell_at == pytest.approx(499 * PERIOD)
+
+
+def test_a_capture_point_is_ahead_by_speed_and_height() -> None:
+    """Weight over the very middle, moving slowly forwards: nearer to the toes by v sqrt(h / g)."""
+    still, moving = measure(standing()), measure(drifting(0.02))
+    assert still.capture_margin == pytest.approx(still.margin)
+    ahead = 0.02 * np.sqrt(moving.com[-1, 2] / 9.81)
+    hull = support_hull(np.asarray(standing().channels["sole_point"])[0, :, :2])
+    point = moving.com[-1, :2] + [ahead, 0.0]
+    assert moving.capture_margin[-1] == pytest.approx(margin(hull, point), abs=1e-6)
+    assert moving.fell_at is None
+
+
+def test_who_comes_back_over_her_feet_has_not_fallen() -> None:
+    recording = standing()
+    com = np.array(recording.channels["com"])
+    com[100:400, 0] += 0.4 * np.sin(np.linspace(0, np.pi, 300)) ** 2
+    figures = measure(changed(recording, com=com))
+    assert figures.margin.min() < -0.1
+    assert figures.fell_at is None
+
+
 def test_a_joint_that_lags_shows() -> None:
     recording = standing()
     qpos = recording.qpos.copy()
