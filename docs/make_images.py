@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from PIL import Image
 from scipy.spatial.transform import Rotation
 
-from enpointe.notation.stave import SPACE
+from enpointe.notation.stave_ink import SPACE
 from enpointe.sim.camera import View
 from enpointe.sim.render import gl_backend
 

@@ -83,6 +83,7 @@ def test_what_is_performed_and_the_other_side_are_scores_too(score: Score) -> No
         assert parse_score(format_score(other)) == other
 
 
+@pytest.mark.soak
 @pytest.mark.slow
 @settings(MANY)
 @given(scores(max_frames=4))
@@ -131,6 +132,7 @@ def test_mutated_bytes_are_read_or_refused(name: str, data: st.DataObject) -> No
         parse_score(bytes(raw))
 
 
+@pytest.mark.soak
 @pytest.mark.slow
 @settings(MANY, max_examples=1000)
 @given(scores(max_frames=3), st.integers(0, 2**32))
