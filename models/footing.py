@@ -90,10 +90,10 @@ def knee_bend(joints: Joints, side: Side) -> float:
 def footprint_of(joints: Joints, side: Side, contact: FloorContact, figure: Figure) -> Footprint:
     """Where a foot that bears weight would stand flat, in the world.
 
-    A rising foot, as in a grand plié, keeps its ball; on pointe it has drawn its tip in to where a quarter of the way
-    from heel to tip was (see `StanceTracker`). A foot that stands lies flat, so that what its sole
-    is off the level is an error of the angles above it; `_OF_THE_HIP` of it is taken back about
-    the hip.
+    A rising foot, as in a grand plié, keeps its ball; on pointe it has drawn its tip in to where a
+    quarter of the way from heel to tip was (see `StanceTracker`). A foot that stands lies flat, so
+    that what its sole is off the level is an error of the angles above it; `_OF_THE_HIP` of it is
+    taken back about the hip.
     """
     along = joints[f"{side}_ball"] - joints[f"{side}_heel"]
     along = along / np.linalg.norm(along)

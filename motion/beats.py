@@ -16,7 +16,7 @@ from enpointe.notation import TEMPO_RANGE
 __all__ = ["Pulse", "find_pulse", "on_the_beat"]
 
 Array = NDArray[np.float64]
-_PERIODS = np.geomspace(0.30, 2.0, 800)
+_PERIODS = np.geomspace(0.30, 2.0, 420)
 """Pulses that are tried, s: from 200 to 30 a minute."""
 _USUAL = 0.9
 """The pulse that is preferred where several fit alike, s: people tap at 60 to 120 a minute, and
@@ -31,7 +31,7 @@ beats."""
 _LATEST = 0.12
 _LATE = 0.12
 """What a beat of such lateness costs, in beats."""
-_OFFSETS = 73
+_OFFSETS = 37
 _MOST_OFF = 0.15
 """A frame farther than this from its beat counts no more, so that a stray one does not sway all."""
 

@@ -102,9 +102,8 @@ def read_motion(
         scribe.write(beat, recognition, turned, moment.holds and bool(kept))
         kept.append((moment, recognition))
     frames = _with_jumps(scribe.frames, [m.time for m, _ in kept], outline.flights, pulse)
-    if tempo is None:
-        tempo = pulse.tempo
-    score = Score(motion.name, "Cecchetti", metre, tempo, tuple(frames))
+    own = pulse.tempo if tempo is None else tempo
+    score = Score(motion.name, "Cecchetti", metre, own, tuple(frames))
     score = _with_travel(score, motion, [m.time for m, _ in kept], recogniser)
     notated = tuple(
         NotatedFrame(frame, moment.time, recognition)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 import mujoco
 import numpy as np
@@ -27,18 +28,30 @@ _FLESH = 0.10
 _PAPER, _INK, _BROKEN = (252, 250, 245), (43, 38, 38), (168, 32, 32)
 
 
-def fitted_view(model: mujoco.MjModel, poses: Iterable[Array], view: View) -> View:
-    """The view, so far back that the dancer is in the picture in every pose."""
+def fitted_view(
+    model: mujoco.MjModel, poses: Iterable[Array], view: View, *, follow: bool = False
+) -> View:
+    """The view, so far back that the dancer is in the picture in every pose.
+
+    Args:
+        model: The dancer.
+        poses: Each (nq,).
+        view: From where.
+        follow: Go with the CoM over the floor, so that who travels is no smaller for it.
+    """
     data = mujoco.MjData(model)
     clouds = []
     for qpos in poses:
         data.qpos[:] = qpos
         mujoco.mj_kinematics(model, data)
-        clouds.append(data.xpos[1:].copy())
-        clouds.append(data.site_xpos.copy())
+        mujoco.mj_comPos(model, data)
+        place = np.array([*data.subtree_com[0, :2], 0.0]) if follow else np.zeros(3)
+        clouds.append(data.xpos[1:] - place)
+        clouds.append(data.site_xpos - place)
     points = np.concatenate(clouds)
     corners = [points + np.array([0.0, y, z]) for y in (-_FLESH, _FLESH) for z in (-0.06, _FLESH)]
-    return view.fitted(np.concatenate(corners), aspect=ASPECT, margin=1.06)
+    fitted = view.fitted(np.concatenate(corners), aspect=ASPECT, margin=1.06)
+    return replace(fitted, follow=follow)
 
 
 def stills(

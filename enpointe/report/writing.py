@@ -109,7 +109,7 @@ def _draw(
         model = first.motion.model
         views = {"from the front": View(elevation=-9.0)}
     configurations = [pose.qpos for pose in poses]
-    aimed = [fitted_view(model, configurations, view) for view in views.values()]
+    aimed = [fitted_view(model, configurations, view, follow=True) for view in views.values()]
     progress("pictures", 0, 1)
     pictures, warning = stills(model, configurations, aimed)
     progress("pictures", 1, 1)

@@ -24,6 +24,10 @@ def second(line: str) -> str:
     return f"{START}beat 1:\n  {line}\n"
 
 
+ALOFT = second("left leg: pointed devant\n  right leg: pointed derrière")
+"""A frame with nobody on the floor, and no jump that leads there."""
+
+
 def refused(capfd: pytest.CaptureFixture[str], *arguments: str) -> str:
     """The one line with which a command is refused."""
     assert _run(list(arguments)) == 2

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from .commands import HEAD, START, refused, second
+from .commands import ALOFT, HEAD, START, refused, second
 
 MALFORMED: dict[str, tuple[str | bytes, int]] = {
     "unknown sign": (second("left hand: 1 wide, 4 high, beside"), 10),
@@ -54,6 +54,18 @@ def test_a_malformed_score_is_one_line_with_its_place(
     assert file == str(score)
     assert int(at) == line
     assert int(column) >= 1
+    assert list(home.iterdir()) == []
+
+
+@pytest.mark.parametrize("verb", ["perform", "compare"])
+def test_nobody_stays_in_the_air_without_a_jump(
+    verb: str, home: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    score = tmp_path / "aloft.bmn"
+    score.write_text(ALOFT, "utf-8")
+    message = refused(capfd, verb, str(score), "--json")
+    assert message.startswith(f"enpointe: {score}:9:1: ")
+    assert "write 'jump: off ..., on ...'" in message
     assert list(home.iterdir()) == []
 
 

@@ -13,7 +13,7 @@ import enpointe
 from enpointe.cli import _run
 
 from ..motion.dancing import written_score
-from .commands import SHORT, one_object
+from .commands import ALOFT, SHORT, one_object
 from .test_perform import PHYSICAL, make_limp
 
 
@@ -94,6 +94,23 @@ def test_pose_prints_rules(
     (pose,) = figures["poses"]  # type: ignore[misc]
     assert {"name", "qpos", "rules", "solve_ms"} <= set(pose)
     assert Path("arms-fifth-en-haut/report.html").is_file()
+
+
+def test_a_pose_in_the_air_is_a_pose(
+    home: Path,
+    tmp_path: Path,
+    plain_report: list[object],
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    """Nothing holds her there, and nothing has to: a picture of a jump."""
+    score = tmp_path / "aloft.bmn"
+    score.write_text(ALOFT, "utf-8")
+    assert _run(["pose", str(score), "--json"]) == 0
+    poses = one_object(capfd.readouterr().out)["poses"]
+    assert isinstance(poses, list)
+    standing, aloft = ({rule["rule"] for rule in pose["rules"]} for pose in poses)
+    assert "centre of mass over the support" in standing - aloft
+    assert "left pointed foot" in aloft - standing
 
 
 def test_the_vocabulary_can_be_listed(home: Path, capfd: pytest.CaptureFixture[str]) -> None:

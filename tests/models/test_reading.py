@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from enpointe.errors import PoseError
 from enpointe.models import Figure, dancer_model, pose_target
-from enpointe.models.extremities import extremity, limb_root
+from enpointe.models.extremities import extremity
 from enpointe.models.joints import Joints
 from enpointe.models.limbs import orientation
 from enpointe.models.reading import LEVEL, read_signs
@@ -120,32 +120,28 @@ def test_a_dancer_in_the_air_stands_on_nothing() -> None:
 
 @given(st.integers(0, 2**32 - 1))
 def test_a_read_sign_is_the_place_it_was_read_from(seed: int) -> None:
-    """Any arm whatever: its signs put elbow and wrist where they were, to the width of "level"."""
+    """Any arm whatever: its signs, measured on the dancer, put elbow and wrist where they were."""
     qpos = random_qpos(MODEL, np.random.default_rng(seed))
     data = data_at(MODEL, qpos)
     found = read_signs(MODEL, qpos, FIGURE)
     for side in Side:
-        places = {
-            joint: in_frame(data, "torso", data.site(f"{side}_{joint}").xpos)
-            for joint in ("elbow", "wrist")
-        }
-        root = limb_root(FIGURE, side, leg=False)
+        shoulder, elbow, wrist = (
+            in_frame(data, "torso", data.site(f"{side}_{joint}").xpos)
+            for joint in ("shoulder", "elbow", "wrist")
+        )
+        signs = [(found.hands[side], shoulder, wrist)]
         if side in found.elbows:
-            elbow = extremity(FIGURE, side, found.elbows[side], FIGURE.upper_arm, gives=True)
-            assert np.linalg.norm(elbow - places["elbow"]) < 0.15 * FIGURE.upper_arm or _edge(
-                places["elbow"] - root
-            )
-            root = places["elbow"]
-        length = float(np.linalg.norm(places["wrist"] - root))
-        wrist = extremity(FIGURE, side, found.hands[side], length, root=root)
-        if not _edge(places["wrist"] - root) and found.hands[side].height < 6.0:
-            assert np.linalg.norm(wrist - places["wrist"]) < 3 * LEVEL * length + 0.01
-
-
-def _edge(along: np.ndarray) -> bool:
-    """Level and straight up or down, where depth and width are both next to nothing."""
-    unit = along / np.linalg.norm(along)
-    return bool(np.hypot(unit[0], unit[1]) < 0.35)
+            signs = [(found.elbows[side], shoulder, elbow), (found.hands[side], elbow, wrist)]
+        for sign, root, place in signs:
+            if not 1.0 < sign.height < 6.0:
+                continue
+            length = float(np.linalg.norm(place - root))
+            again = extremity(FIGURE, side, sign, length, root=root)
+            assert again[2] == pytest.approx(place[2], abs=1e-6)
+            if sign.depth is Depth.LEVEL:
+                assert abs(place[0] - again[0]) <= LEVEL * length + 1e-6
+            else:
+                assert again == pytest.approx(place, abs=1e-6)
 
 
 @given(st.integers(0, 2**32 - 1))

@@ -1,8 +1,8 @@
 """A captured dancer's joints from ASF and AMC files: as much of the format as the tests need.
 
-A bone turns by its angles about axes of its own (`axis`), from its parent's turn on, and ends at its
-length along its direction so turned. Angles are in degrees, the turns of an XYZ order about x first;
-lengths are inches over `length`; y is up, z forward and x to the left.
+A bone turns by its angles about axes of its own (`axis`), from its parent's turn on, and ends at
+its length along its direction so turned. Angles are in degrees, the turns of an XYZ order about x
+first; lengths are inches over `length`; y is up, z forward and x to the left.
 """
 
 from __future__ import annotations

@@ -96,6 +96,27 @@ def test_wrists_that_do_not_move_are_not_drawn() -> None:
     assert wrist_chart([way], [series], Effort(-3.0, 0.5, 1.0), "wrists") is None
 
 
+def test_who_travels_is_no_smaller_for_it(physical: Performance) -> None:
+    """Key poses are shown where they are danced, with the camera beside them."""
+    import mujoco
+
+    model = physical.motion.model
+    near = [pose.qpos for pose in physical.choreography.key_poses]
+    far = [qpos.copy() for qpos in near]
+    far[-1][:2] += [-3.0, 4.0]
+    here, there = (fitted_view(model, poses, View(), follow=True) for poses in (near, far))
+    assert there.distance == pytest.approx(here.distance)
+    assert fitted_view(model, far, View()).distance > 1.5 * here.distance
+    data = mujoco.MjData(model)
+    for qpos in far:
+        data.qpos[:] = qpos
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        aimed = there.aimed(data.subtree_com[0])
+        seen = Projection(aimed, 400, 500).pixels(data.xpos[1:])
+        assert np.all((seen > 0) & (seen < [400, 500]))
+
+
 def test_the_dancer_is_in_the_picture_in_every_pose(physical: Performance) -> None:
     model = physical.motion.model
     poses = [pose.qpos for pose in physical.choreography.key_poses]
