@@ -1,4 +1,4 @@
-"""What a certificate promises, measured anew by MuJoCo: no line of the rules is used here."""
+"""What a certificate says and promises, the latter measured anew by MuJoCo."""
 
 from __future__ import annotations
 
@@ -20,15 +20,25 @@ from enpointe.models.leg_target import (
     ToeOnLeg,
 )
 from enpointe.models.rules.balance import centroid, half_planes
-from enpointe.notation import Side
+from enpointe.notation import ResolvedFrame, Side
 
-from .exceptions import OVERLAPS
+from .exceptions import OVERLAPS, allowed
 from .posing import at, hinge, in_frame, overlaps
 
 EDGES = ("inner", "outer")
 MM = 1e-3
 TOE = 0.011
 """Flesh under the tip of a stretched toe, m."""
+
+
+def check_certified(found: KeyPose, frame: ResolvedFrame, who: str) -> None:
+    """Legal, and every rule held but those that the table of exceptions names."""
+    broken = {r.rule.removeprefix("left ").removeprefix("right ") for r in found.certificate.broken}
+    assert found.certificate.legal, str(found.certificate)
+    assert broken <= allowed(frame, who), str(found.certificate)
+    assert found.held is (not broken)
+    if found.held:
+        assert str(found.certificate) == f"all {len(found.certificate.results)} rules held"
 
 
 def check_in_mujoco(model: mujoco.MjModel, found: KeyPose) -> None:

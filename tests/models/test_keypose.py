@@ -12,10 +12,9 @@ import pytest
 from enpointe.models import KeyPose, KeyPoseSolver, PoseTarget, RuleResult, pose_target
 from enpointe.models.leg_target import InAir, Standing
 from enpointe.models.seed import differential_ik
-from enpointe.notation import ResolvedFrame, Side
+from enpointe.notation import Side
 
-from .checking import check_in_mujoco, too_deep
-from .exceptions import allowed
+from .checking import check_certified, check_in_mujoco, too_deep
 from .posing import (
     SHIPPED,
     STYLES,
@@ -34,16 +33,6 @@ from .posing import (
 every_shipped_pose = pytest.mark.parametrize(
     ("name", "index"), SHIPPED, ids=[f"{name} {index}" for name, index in SHIPPED]
 )
-
-
-def check_certified(found: KeyPose, frame: ResolvedFrame, who: str) -> None:
-    """Legal, and every rule held but those that the table of exceptions names."""
-    broken = {r.rule.removeprefix("left ").removeprefix("right ") for r in found.certificate.broken}
-    assert found.certificate.legal, str(found.certificate)
-    assert broken <= allowed(frame, who), str(found.certificate)
-    assert found.held is (not broken)
-    if found.held:
-        assert str(found.certificate) == f"all {len(found.certificate.results)} rules held"
 
 
 @pytest.mark.parametrize("style", STYLES)
