@@ -43,6 +43,9 @@ mpl.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import mujoco  # noqa: E402
 from matplotlib.axes import Axes  # noqa: E402
+from matplotlib.patches import PathPatch  # noqa: E402
+from matplotlib.path import Path as Outline  # noqa: E402
+from matplotlib.transforms import Affine2D  # noqa: E402
 
 import enpointe  # noqa: E402
 from enpointe.models import dancer_model  # noqa: E402
@@ -133,36 +136,58 @@ def canvas(width: int, height: int) -> tuple[plt.Figure, Axes]:
     return figure, axes
 
 
-def draw_frame(axes: Axes, group: ElementTree.Element, x: float, y: float, scale: float) -> None:
-    """One frame of our own SVG stave, the middle of its cell's top line at (x, y)."""
-    cell = group.find(f"{_SVG}rect").attrib  # type: ignore[union-attr]
-    middle = float(cell["x"]) + float(cell["width"]) / 2
-    top = float(cell["y"]) + 2.8 * SPACE
+_CODES = {
+    "M": [Outline.MOVETO],
+    "L": [Outline.LINETO],
+    "Q": [Outline.CURVE3] * 2,
+    "C": [Outline.CURVE4] * 3,
+}
 
-    def at(px: float, py: float) -> tuple[float, float]:
-        return x + (px - middle) * scale, y + (py - top) * scale
 
-    for element in group:
+def outline(drawing: str) -> Outline:
+    """SVG path data with the absolute commands M, L, Q, C and Z."""
+    points: list[tuple[float, ...]] = []
+    codes = []
+    for command, numbers in re.findall(r"([MLQCZ])([^MLQCZ]*)", drawing):
+        if command == "Z":
+            points.append((0.0, 0.0))
+            codes.append(Outline.CLOSEPOLY)
+            continue
+        places = np.array([float(n) for n in numbers.replace(",", " ").split()]).reshape(-1, 2)
+        points += [tuple(place) for place in places]
+        codes += _CODES[command] * (len(places) // len(_CODES[command]))
+    return Outline(points, codes)
+
+
+def draw_frame(
+    axes: Axes, group: ElementTree.Element, top: float, x: float, y: float, scale: float
+) -> None:
+    """One frame of our own SVG stave, whose top line is at `top`, the middle of that at (x, y)."""
+    texts = {element.get("class"): element for element in group.iter(f"{_SVG}text")}
+    middle = float(texts["frame-number"].attrib["x"])
+    placed = Affine2D().translate(-middle, -top).scale(scale).translate(x, y)
+    for element in group.iter(f"{_SVG}path"):
         a = element.attrib
-        if element.tag == f"{_SVG}path":
-            weight = float(a["stroke-width"]) * scale * 0.72
-            for stroke in re.findall(r"M(\S+) (\S+)L(\S+) ([\d.\-]+)", a["d"]):
-                x1, y1, x2, y2 = map(float, stroke)
-                ends = list(zip(at(x1, y1), at(x2, y2), strict=True))
-                axes.plot(*ends, color=INK, linewidth=weight, solid_capstyle="butt")
-        elif element.tag == f"{_SVG}circle":
-            centre = at(float(a["cx"]), float(a["cy"]))
-            axes.add_patch(plt.Circle(centre, float(a["r"]) * scale, color=INK, linewidth=0))
-        elif element.tag == f"{_SVG}text":
-            px, py = at(float(a["x"]), float(a["y"]))
-            size = float(a["font-size"]) * scale * 0.72
-            axes.text(px, py, element.text, family="DejaVu Serif", size=size, ha="center")
+        patch = PathPatch(
+            placed.transform_path(outline(a["d"])),
+            facecolor="none" if a.get("fill") == "none" else INK,
+            edgecolor=INK if "stroke" in a else "none",
+            linewidth=float(a.get("stroke-width", 0)) * scale * 0.72,
+            capstyle="butt",
+        )
+        axes.add_patch(patch)
+    count = texts["count"]
+    px, py = placed.transform((middle, float(count.attrib["y"])))
+    size = float(count.attrib["font-size"]) * scale * 0.72
+    axes.text(px, py, count.text, family="DejaVu Serif", size=size, ha="center")
 
 
 def draw_stave(axes: Axes, columns: list[float], y: float, scale: float, score: object) -> None:
     """The first frames of a score on five lines, a frame over each column."""
     svg = ElementTree.fromstring(stave_svg(score))  # type: ignore[arg-type]
     groups = {g.get("id"): g for g in svg.iter(f"{_SVG}g") if g.get("class") == "frame"}
+    lines = [p for p in svg.iter(f"{_SVG}path") if p.get("class") == "stave-line"]
+    top = float(outline(lines[0].attrib["d"]).vertices[0][1])
     pitch = columns[1] - columns[0]
     left, right = columns[0] - 0.526 * pitch, columns[-1] + 0.491 * pitch
     for line in range(5):
@@ -183,7 +208,7 @@ def draw_stave(axes: Axes, columns: list[float], y: float, scale: float, score: 
             va="center_baseline",
         )
     for n, column in enumerate(columns):
-        draw_frame(axes, groups[f"frame-{n}"], column, y, scale)
+        draw_frame(axes, groups[f"frame-{n}"], top, column, y, scale)
 
 
 def paste(axes: Axes, picture: Image.Image, x: float, floor: float) -> None:

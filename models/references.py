@@ -1,12 +1,13 @@
 """What the named positions look like as directions of limbs: what a pose is compared with.
 
 Where signs alone say it (arms, straight legs, attitudes), the directions come from the signs. Where
-a position is defined by what the foot touches (tendu, retiré, cou-de-pied), and where a body gives
-way, they come from the solved pose, of the perfect dancer and of the real one.
+a position is defined by what the foot touches (tendu, retiré, cou-de-pied), or has one height only,
+they come from the solved pose too, of the perfect dancer and of the real one.
 """
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -110,14 +111,18 @@ class References:
     Attributes:
         arm_places: Every place of an arm.
         arms: Every position of the arms, with each arm leading.
-        legs: Every position of a working leg.
     """
 
     def __init__(self, model: mujoco.MjModel) -> None:
         self.figure = Figure.of(model)
+        self._model = model
         self.arms = tuple(_arms())
         self.arm_places = {name: self._arm_place(name, place) for name, place in ARM_PLACES.items()}
-        self.legs = tuple(self._legs(model))
+
+    @functools.cached_property
+    def legs(self) -> tuple[LegReference, ...]:
+        """Laid out when the first working leg is looked at: solving takes seconds."""
+        return tuple(self._legs(self._model))
 
     def _arm_place(self, name: str, place: ArmPlace) -> ArmReference:
         """The directions that a sign gives an arm, with no body to give way."""
@@ -136,7 +141,7 @@ class References:
         for entry in LEGS:
             for direction in entry.directions:
                 yield from self._by_signs(entry, direction)
-                if entry.degrees is None or entry.name == "attitude":
+                if entry.degrees is None:
                     yield from self._by_solving(entry, direction, solver)
 
     def _by_signs(self, entry: LegEntry, direction: Direction) -> Iterator[LegReference]:
@@ -158,16 +163,14 @@ class References:
     def _by_solving(
         self, entry: LegEntry, direction: Direction, solver: KeyPoseSolver
     ) -> Iterator[LegReference]:
-        bends = (Bend.STRAIGHT, Bend.DEMI_PLIE) if entry.degrees is None else (None,)
-        for height in entry.degrees or (None,):
-            position = LegPosition(entry.name, direction, height)
-            for bend, real in product(bends, (False, True)):
-                frame = _on_the_right(position, bend or Bend.STRAIGHT)
-                solved = solver.solve(self._target(frame, Style(real=real)))
-                if solved.held:
-                    limbs = LimbDirections.of(solver.model, solved.qpos)
-                    thigh, shank = limbs.thigh[Side.LEFT], limbs.shank[Side.LEFT]
-                    yield LegReference(position, thigh, shank, entry.name == "tendu", bend)
+        position = LegPosition(entry.name, direction)
+        for bend, real in product((Bend.STRAIGHT, Bend.DEMI_PLIE), (False, True)):
+            frame = _on_the_right(position, bend)
+            solved = solver.solve(self._target(frame, Style(real=real)))
+            if solved.held:
+                limbs = LimbDirections.of(solver.model, solved.qpos)
+                thigh, shank = limbs.thigh[Side.LEFT], limbs.shank[Side.LEFT]
+                yield LegReference(position, thigh, shank, entry.name == "tendu", bend)
 
     def _target(self, frame: Frame, style: Style | None = None) -> PoseTarget:
         score = Score("reference", "Cecchetti", (4, 4), 60.0, (frame,))

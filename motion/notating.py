@@ -27,7 +27,8 @@ __all__ = ["NotatedFrame", "NotatedMotion", "notate", "read_motion"]
 _RATE = 50.0
 """Samples a second that are looked at."""
 _POSITION_WITHIN = 4.5
-"""An unsure moment is written if its pose is a named one within this, degrees."""
+_FEET_WITHIN = 3.0
+"""An unsure moment is written if its pose is a named one within these, degrees and cm."""
 _TRAVEL = 0.12
 """Least way on the stage that is written, m: half a foot's length."""
 
@@ -119,8 +120,10 @@ def _positions(
     found = []
     for moment in moments:
         recognition = recogniser.recognise(motion.sample(moment.time)[0])
-        position = recognition.named and recognition.distance < _POSITION_WITHIN
-        if moment.sure or position:
+        feet = recognition.feet
+        near = feet is None or feet.distance < _FEET_WITHIN
+        near = near and recognition.distance < _POSITION_WITHIN
+        if moment.sure or (recognition.named and near):
             found.append((moment, recognition))
     return found
 
