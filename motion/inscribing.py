@@ -10,7 +10,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from enpointe.models.matching import leg_names
+from enpointe.models.matching import NAMED_DEG, leg_names
 from enpointe.models.reading import ReadLeg
 from enpointe.models.recognition import Recognition
 from enpointe.notation import (
@@ -95,7 +95,8 @@ def leg_of(recognition: Recognition, side: Side) -> Leg:
         if feet is not None:
             return Leg(None, replace(_plain(read.foot), height=HEIGHTS[0]), None, support)
         return Leg(None, None, None, support)
-    if match.named:
+    touching = read.support is not None
+    if match.named and (touching or match.distance < NAMED_DEG):
         assert isinstance(match.position, LegPosition)
         return Leg(match.position, None, None, None)
     return _working(read)
