@@ -10,21 +10,14 @@ import pytest
 from enpointe.cli import _run
 
 from ..motion.dancing import written_score
+from ..notation.texts import frame
 
 SHORT = written_score(
     "feet: fifth right front; arms: fifth en bas",
     "arms: à la seconde; head: turn right 20",
     tempo=90,
 )
-HEAD = "benesh 1\ntitle: T\nmethod: Cecchetti\nmetre: 4/4\ntempo: 60\n"
-START = HEAD + "beat 0:\n  feet: first\n  arms: first\n"
-
-
-def second(line: str) -> str:
-    return f"{START}beat 1:\n  {line}\n"
-
-
-ALOFT = second("left leg: pointed devant\n  right leg: pointed derrière")
+ALOFT = frame("  left leg: pointed devant\n  right leg: pointed derrière")
 """A frame with nobody on the floor, and no jump that leads there."""
 
 

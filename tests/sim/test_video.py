@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from types import TracebackType
-from typing import Self
 
 import numpy as np
 import pytest
@@ -16,6 +14,7 @@ from PIL import Image, ImageDraw
 
 from enpointe.errors import MotionError, RenderError
 from enpointe.sim.camera import Overlays, View
+from enpointe.sim.render import Painter
 from enpointe.sim.video import (
     can_write_mp4,
     film,
@@ -39,7 +38,7 @@ def clock(count: int, size: tuple[int, int] = (60, 40)) -> list[Image.Image]:
     return pictures
 
 
-class GreyPainter:
+class GreyPainter(Painter):
     """Paints the first coordinate as a grey."""
 
     size = (16, 12)
@@ -49,20 +48,6 @@ class GreyPainter:
     ) -> Image.Image:
         level = int(np.asarray(qpos)[0]) + (100 if overlays is not None else 0)
         return Image.new("RGB", self.size, (level, level, level))
-
-    def close(self) -> None:
-        """Nothing to give back."""
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
 
 def level(picture: Image.Image) -> int:
