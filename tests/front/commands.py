@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from typing import Any
 
 import pytest
 
@@ -33,7 +34,8 @@ def refused(capfd: pytest.CaptureFixture[str], *arguments: str) -> str:
     return err
 
 
-def one_object(text: str) -> Mapping[str, object]:
+def one_object(text: str) -> Mapping[str, Any]:
+    """The one line of JSON that a command printed."""
     assert text.count("\n") == 1
     value = json.loads(text, parse_constant=lambda c: pytest.fail(f"{c} is no JSON"))
     assert isinstance(value, dict)
