@@ -7,6 +7,7 @@ import mujoco
 import numpy as np
 
 from enpointe.models import PoseTarget
+from enpointe.models.anatomy import side_sign
 from enpointe.models.leg_target import InAir, OnPointe, Standing, ToeOnLeg
 from enpointe.models.rules.legs import TOE_THICKNESS
 from enpointe.models.seed import differential_ik
@@ -46,7 +47,7 @@ def foot_left(configuration: mink.Configuration, target: PoseTarget, side: Side)
         return float(np.linalg.norm(target.upright.T @ ankle - leg.ankle + figure.hips[side]))
     if isinstance(leg, ToeOnLeg):
         gap = target.upright.T @ (tip - data.site(f"{side.other}_{leg.site}").xpos)
-        outward = 1.0 if side is Side.LEFT else -1.0
+        outward = side_sign(side)
         ahead, aside, up = leg.offset
         return float(np.linalg.norm(gap - [ahead, outward * aside, up]))
     place = target.upright.T @ (tip - data.body("pelvis").xpos)

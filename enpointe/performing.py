@@ -120,9 +120,10 @@ class Performance:
             "rules_broken": [f"{pose.name}: {words}" for pose, words in self.broken],
             "logistic": None if fit is None else {"b": fit.time, "x0": fit.weight, "rms": fit.rms},
         }
-        if self.recording is None or self.measures is None:
-            return figures
-        return {**figures, **_physical_figures(self.recording, self.measures, self.shortfall)}
+        if self.recording is not None and self.measures is not None:
+            physical = _physical_figures(self.recording, self.measures, self.shortfall)
+            figures = {**figures, **physical}
+        return figures
 
 
 def _physical_figures(
