@@ -25,7 +25,7 @@ from enpointe.notation import (
     Support,
 )
 from enpointe.notation.amounts import HEIGHTS, MAX_DEGREES, WIDTHS
-from enpointe.notation.stage import Facing, Turn, shorter_way
+from enpointe.notation.stage import Facing, Turn
 
 __all__ = ["Scribe", "arms_of", "leg_of"]
 
@@ -200,11 +200,11 @@ class Scribe:
         facing = recognition.signs.facing_degrees
         if abs(turned) > _WHOLE_TURN and self.frames:
             degrees = _near_compass(abs(turned))
-            self._facing = shorter_way(self._facing + (degrees if turned > 0 else -degrees))
+            self._facing = _wrapped(self._facing + (degrees if turned > 0 else -degrees))
             return replace(frame, turn=Turn(degrees, Side.LEFT if turned > 0 else Side.RIGHT))
-        if abs(shorter_way(facing - self._facing)) < _SAME_FACING and self.frames:
+        if abs(_wrapped(facing - self._facing)) < _SAME_FACING and self.frames:
             return frame
-        self._facing = shorter_way(_near_compass(facing))
+        self._facing = _wrapped(_near_compass(facing))
         return replace(frame, facing=Facing(self._facing))
 
     def _with_pose(self, frame: Frame, recognition: Recognition) -> Frame:
@@ -299,3 +299,8 @@ def _near_compass(degrees: float) -> float:
     """An angle on the compass where it is close to it, otherwise to 5 degrees."""
     eighth = 45.0 * round(degrees / 45.0)
     return eighth if abs(eighth - degrees) < _COMPASS else 5.0 * round(degrees / 5.0)
+
+
+def _wrapped(angle: float) -> float:
+    """The same direction, above -180 and up to 180."""
+    return 180.0 - (180.0 - angle) % 360.0
