@@ -207,10 +207,9 @@ def main() -> None:
     found = report(arguments.repeats)
     if arguments.write:
         page = PAGE.read_text(encoding="utf-8")
-        tables = re.sub(r"^(reference laid out.*|###)", "", table(found), flags=re.MULTILINE)
-        PAGE.write_text(
-            MARKED.sub(lambda m: f"{m[1]}\n{tables}\n\n{m[2]}", page), encoding="utf-8"
-        )
+        tables = re.sub(r"^### (.*)$", r"**Noise: \1**", table(found), flags=re.MULTILINE)
+        tables = re.sub(r"^reference laid out.*\n", "", tables, flags=re.MULTILINE)
+        PAGE.write_text(MARKED.sub(lambda m: f"{m[1]}\n{tables}\n\n{m[2]}", page), encoding="utf-8")
     print(json.dumps(found, indent=2, ensure_ascii=False) if arguments.json else table(found))
 
 

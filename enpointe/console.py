@@ -10,7 +10,7 @@ from pathlib import Path
 
 import rich.console
 from rich.console import RenderableType
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from enpointe.performing import Progress as Report
@@ -45,13 +45,13 @@ class Console:
             console=rich.console.Console(stderr=True),
             transient=True,
         )
-        tasks: dict[str, object] = {}
+        tasks: dict[str, TaskID] = {}
         with bars:
 
             def show(task: str, done: float, total: float) -> None:
                 if task not in tasks:
                     tasks[task] = bars.add_task(task, total=total)
-                bars.update(tasks[task], completed=done, total=total)  # type: ignore[arg-type]
+                bars.update(tasks[task], completed=done, total=total)
 
             yield show
 
