@@ -15,7 +15,7 @@ import re
 import sys
 import tomllib
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import mujoco
@@ -126,14 +126,17 @@ def solved(pose: str, real: bool = False) -> KeyPose:
 def put_wrong(fault: Fault) -> KeyPose:
     """The pose with one joint out of place, certified anew."""
     found = solved(fault.pose, fault.real)
-    qpos = np.array(found.qpos)
+    qpos, upright = np.array(found.qpos), Rotation.from_euler("z", found.target.facing)
+    rotation = Rotation.from_quat(qpos[3:7], scalar_first=True)
     if fault.joint == "root":
-        turn = Rotation.from_euler("z", fault.by, degrees=True)
-        rotation = turn * Rotation.from_quat(qpos[3:7], scalar_first=True)
+        rotation = Rotation.from_euler("z", fault.by, degrees=True) * rotation
         qpos[3:7] = rotation.as_quat(scalar_first=True)
     else:
         qpos[solver().model.joint(fault.joint).qposadr[0]] += np.radians(fault.by)
-    return solver().certified(found.target, qpos)
+    unknowns = np.concatenate([qpos[:3], (upright.inv() * rotation).as_rotvec(), qpos[7:]])
+    problem = solver().problem(found.target)
+    certificate = problem.certify(unknowns, problem.parameters(found.target))
+    return replace(found, qpos=qpos, certificate=certificate)
 
 
 def _between(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:

@@ -210,29 +210,6 @@ class KeyPoseSolver:
             return cold if cold.certificate.legal and not folded else near
         return self._solve_from(target, None)
 
-    def certified(self, target: PoseTarget, qpos: NDArray[np.float64]) -> KeyPose:
-        """Any configuration (nq,) as a pose, measured by the rules of a target; nothing is solved.
-
-        Example:
-            >>> from enpointe.models import KeyPoseSolver, dancer_model, pose_target
-            >>> from enpointe.notation import load_score
-            >>> solver = KeyPoseSolver(dancer_model())
-            >>> frame = load_score("first-port-de-bras").resolved()[0]
-            >>> standing = solver.model.key("standing").qpos
-            >>> solver.certified(pose_target(frame, solver.figure), standing).held
-            False
-        """
-        problem = self.problem(target)
-        unknowns = _tangent(np.asarray(qpos, dtype=np.float64), target.facing)
-        return KeyPose(
-            name=target.name,
-            qpos=np.array(qpos, dtype=np.float64),
-            certificate=problem.certify(unknowns, problem.parameters(target)),
-            target=target,
-            solve_ms=0.0,
-            iterations=0,
-        )
-
     def _solve_from(self, target: PoseTarget, guess: NDArray[np.float64] | None) -> KeyPose:
         problem = self.problem(target)
         parameters = problem.parameters(target)
