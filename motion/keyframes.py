@@ -132,7 +132,8 @@ def key_moments(outline: MotionOutline) -> tuple[KeyMoment, ...]:
         hold = max(_SHORTEST_HOLD, _SLOW_START * (end - start))
         if not moments or start - moments[-1].time > hold:
             moments.append(KeyMoment(start, True, 1.0))
-        inside = [(i, 1.0 + depth) for i, depth in _pauses(outline.speed[a:b], _PAUSE)]
+        whole = _pauses(outline.speed[a:b], _PAUSE, ripples=False)
+        inside = [(i, 1.0 + depth) for i, depth in whole]
         inside += _pauses(outline.speed[a:b], _SLIGHT_PAUSE)
         for speed in outline.speeds.values():
             if speed[a:b].max() > _LIMB_MOVES:
@@ -142,13 +143,15 @@ def key_moments(outline: MotionOutline) -> tuple[KeyMoment, ...]:
     return tuple(moments)
 
 
-def _pauses(speed: Array, below: float) -> list[tuple[int, float]]:
-    """Where a speed dips between two peaks to less than a share of the lower one, and how deep."""
+def _pauses(speed: Array, below: float, *, ripples: bool = True) -> list[tuple[int, float]]:
+    """Where a speed dips between two peaks to less than a share of the lower one, and how deep.
+
+    Without ripples a peak in a slow stretch is none, which would hide the pause about it.
+    """
     padded = np.concatenate([[0.0], speed, [0.0]])
     peaks, _ = find_peaks(padded)
-    # A ripple in a slow stretch is no peak: nothing beside it would count as a pause.
-    high = peak_prominences(padded, peaks)[0] > (1.0 - _SLIGHT_PAUSE) * padded[peaks]
-    peaks = peaks[high]
+    if not ripples:
+        peaks = peaks[peak_prominences(padded, peaks)[0] > (1.0 - _SLIGHT_PAUSE) * padded[peaks]]
     found = []
     for before, after in zip(peaks[:-1] - 1, peaks[1:] - 1, strict=True):
         low = before + int(np.argmin(speed[before : after + 1]))
