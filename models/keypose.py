@@ -259,7 +259,7 @@ def _slices(lengths: list[int]) -> list[slice]:
 
 def _result(rule: Rule, residual: NDArray[np.float64]) -> RuleResult:
     scaled = residual * rule.per_unit
-    if rule.kind is Kind.AT_LEAST:
+    if rule.kind.is_margin:
         value = float(scaled.min())
         held = value >= rule.bound - 1e-3
     else:
@@ -272,6 +272,6 @@ def _result(rule: Rule, residual: NDArray[np.float64]) -> RuleResult:
         rule.bound,
         bool(held),
         rule.source,
-        at_least=rule.kind is Kind.AT_LEAST,
-        must=rule.kind in (Kind.EQUAL, Kind.AT_LEAST),
+        at_least=rule.kind.is_margin,
+        must=rule.kind.is_constraint,
     )

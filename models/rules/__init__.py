@@ -23,6 +23,7 @@ from enpointe.models.rules.balance import (
 from enpointe.models.rules.base import Kind as Kind
 from enpointe.models.rules.base import Rule as Rule
 from enpointe.models.rules.base import Symbols as Symbols
+from enpointe.models.rules.clearance import ArmsClearOfLegs, ArmsClearOfTheBody, LegsApart
 from enpointe.models.rules.feet import (
     BallOnItsMark,
     FeetTurnedOutAlike,
@@ -76,7 +77,8 @@ def rules_for(target: PoseTarget) -> tuple[Rule, ...]:
         rules += [ComOverSupport(), CentredWeight() if bearing > 1 else WeightOverTheFoot()]
     if all(isinstance(leg, Standing) for leg in target.legs.values()):
         rules.append(FeetTurnedOutAlike())
-    return tuple(rules)
+    lifted = tuple(side for side, leg in target.legs.items() if isinstance(leg, InAir | ToeOnLeg))
+    return (*rules, LegsApart(), ArmsClearOfLegs(lifted), ArmsClearOfTheBody())
 
 
 def _pelvis_rule(target: PoseTarget) -> Rule:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from math import cos, radians, sin
 from typing import ClassVar
 
@@ -175,7 +176,10 @@ class FootOnItsWayToPoint(PointedFoot):
 
 
 class FootAboveTheFloor(SidedRule):
-    """No part of a passing foot goes through the floor: heel, ball and toe tip at z >= 0."""
+    """No part of a passing foot goes through the floor: z >= 0 under heel, ball and toe tip.
+
+    Under both edges of each, as the compiled soles have them: a foot on its way rolls.
+    """
 
     name: ClassVar[str] = "foot above the floor"
     unit: ClassVar[str] = "mm"
@@ -184,8 +188,8 @@ class FootAboveTheFloor(SidedRule):
     source: ClassVar[str] = "Neagle 2005 §4.5.3 e (toes below the floor)"
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
-        points = ("heel", "ball", "toe_tip")
-        return ca.vertcat(*(body.site(f"{self.side}_{p}")[2] for p in points))
+        spheres = product(("heel", "ball", "tip"), ("inner", "outer"))
+        return ca.vertcat(*(body.lowest(f"{self.side}_{p}_{edge}") for p, edge in spheres))
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
         return {}

@@ -12,7 +12,18 @@ import pytest
 from enpointe.models import Figure, PoseTarget, Style, dancer_model, pose_target
 from enpointe.models.kinematics import SymbolicBody, qpos_from_tangent
 from enpointe.models.leg_target import InAir
-from enpointe.models.rules import Rule, Symbols, arms, balance, feet, hip, legs, rules_for, stance
+from enpointe.models.rules import (
+    Rule,
+    Symbols,
+    arms,
+    balance,
+    clearance,
+    feet,
+    hip,
+    legs,
+    rules_for,
+    stance,
+)
 
 from .posing import random_tangent, written
 
@@ -86,7 +97,7 @@ def test_every_rule_is_among_those_differentiated() -> None:
     used = {type(rule) for target in TARGETS.values() for rule in rules_for(target)}
     written_down = {
         value
-        for module in (arms, balance, feet, hip, legs, stance)
+        for module in (arms, balance, clearance, feet, hip, legs, stance)
         for value in vars(module).values()
         if isinstance(value, type) and issubclass(value, Rule) and hasattr(value, "name")
     }
