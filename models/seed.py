@@ -28,19 +28,25 @@ _HINGES = ("turn", "tilt", "bend")
 
 
 def differential_ik(
-    model: mujoco.MjModel, target: PoseTarget, *, steps: int = SEED_STEPS
+    model: mujoco.MjModel,
+    target: PoseTarget,
+    *,
+    steps: int = SEED_STEPS,
+    start: NDArray[np.float64] | None = None,
 ) -> NDArray[np.float64]:
-    """Steer the standing dancer towards a target.
+    """Steer the dancer towards a target.
 
     Args:
         model: The dancer.
         target: The pose.
         steps: Number of velocity steps, each one QP (daqp).
+        start: A configuration (nq,) to begin at, within the joint ranges; standing if None.
 
     Returns:
         A configuration (nq,) near the target, inside the joint ranges.
     """
-    configuration = mink.Configuration(model, q=starting_pose(model, target))
+    begin = starting_pose(model, target) if start is None else start
+    configuration = mink.Configuration(model, q=begin)
     tasks = ik_tasks(model, target)
     limits = [mink.ConfigurationLimit(model)]
     for _ in range(steps):
