@@ -26,6 +26,7 @@ from scipy.spatial.transform import Rotation
 
 from enpointe.errors import PoseError
 from enpointe.models.certificate import Certificate, RuleResult
+from enpointe.models.cheats import cheats_of
 from enpointe.models.figure import Figure
 from enpointe.models.kinematics import SymbolicBody, qpos_from_tangent
 from enpointe.models.rules import Kind, Rule, Symbols, rules_for
@@ -256,10 +257,14 @@ class KeyPoseSolver:
             raise PoseError(
                 f"{target.name}: no pose was found; the signs may contradict each other"
             )
+        qpos = _qpos(unknowns, target.facing)
+        certificate = problem.certify(unknowns, parameters)
+        if target.real:
+            certificate = replace(certificate, cheats=cheats_of(self.model, qpos, target))
         return KeyPose(
             name=target.name,
-            qpos=_qpos(unknowns, target.facing),
-            certificate=problem.certify(unknowns, parameters),
+            qpos=qpos,
+            certificate=certificate,
             target=target,
             iterations=iterations,
         )

@@ -17,7 +17,15 @@ from numpy.typing import NDArray
 
 from enpointe.errors import ModelError
 
-__all__ = ["Capsule", "Frame3", "Kinematics", "SymbolicBody", "qpos_from_tangent", "rotation_of"]
+__all__ = [
+    "Capsule",
+    "Frame3",
+    "Kinematics",
+    "SymbolicBody",
+    "angle_over_sine",
+    "qpos_from_tangent",
+    "rotation_of",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,6 +170,15 @@ def qpos_from_tangent(model: mujoco.MjModel, tangent: ca.SX, facing: ca.SX | flo
     c, s = ca.cos(facing / 2), ca.sin(facing / 2)
     quaternion = ca.vertcat(c * w - s * z, c * x - s * y, c * y + s * x, c * z + s * w)
     return ca.vertcat(tangent[:3], quaternion, tangent[6:])
+
+
+def angle_over_sine(square_of_sine: ca.SX, cosine: ca.SX) -> ca.SX:
+    """a / sin a for an angle a in [0, pi), 1 at 0: what makes a cross product a rotation vector.
+
+    The sine's square is padded by 1e-6, so that derivatives stay exact at 0.
+    """
+    sine = ca.sqrt(square_of_sine + 1e-6)
+    return ca.atan2(sine, cosine) / sine
 
 
 def rotation_of(quaternion: ca.SX) -> ca.SX:

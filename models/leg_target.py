@@ -232,7 +232,7 @@ def _rise(leg: ResolvedLeg, style: Style) -> float:
     assert leg.support is not None
     if leg.support.floor is FloorContact.DEMI_POINTE:
         return radians(DEMI_POINTE_DEG)
-    wide = leg.position is not None and (leg.position.name == "second" or leg.position.open)
+    wide = leg.position is not None and leg.position.name == "second"
     if leg.support.bend is Bend.GRAND_PLIE and not wide:
         return radians(style.grand_plie_rise_deg)
     return 0.0

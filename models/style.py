@@ -27,7 +27,7 @@ class Style:
             ours leaves the ankle at 27 degrees of its 30 (Russell et al. 2010).
         grand_plie_deg: Bend of the knee in a grand plié (135 +- 4.6, Fotaki 2024, 20 dancers), less
             what keeps the thighs level.
-        grand_plie_rise_deg: How far the heels rise in it, but in second and open fourth.
+        grand_plie_rise_deg: How far the heels rise in it, but in second.
         real: A real dancer, whose hip has its range and who tips and opens the pelvis for a high
             leg; the perfect dancer keeps it square (Neagle 2005 §4.8).
     """

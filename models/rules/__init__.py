@@ -50,6 +50,7 @@ from enpointe.models.rules.legs import (
 )
 from enpointe.models.rules.stance import (
     BodyAsWritten,
+    BodyLent,
     HeadAsWritten,
     PelvisAsWritten,
     PelvisLent,
@@ -62,7 +63,7 @@ __all__ = ["Kind", "Rule", "Symbols", "rules_for"]
 
 def rules_for(target: PoseTarget) -> tuple[Rule, ...]:
     """The rules that apply to a pose of this structure."""
-    rules: list[Rule] = [HeadAsWritten(), BodyAsWritten(), _pelvis_rule(target)]
+    rules: list[Rule] = [HeadAsWritten(), *_trunk_rules(target)]
     for side in Side:
         rules += _arm_rules(target.arms[side].shape, side)
         rules += _leg_rules(target.legs[side], side)
@@ -81,9 +82,11 @@ def rules_for(target: PoseTarget) -> tuple[Rule, ...]:
     return (*rules, LegsApart(), ArmsClearOfLegs(lifted), ArmsClearOfTheBody())
 
 
-def _pelvis_rule(target: PoseTarget) -> Rule:
+def _trunk_rules(target: PoseTarget) -> list[Rule]:
     working = any(not isinstance(leg, Standing | OnPointe) for leg in target.legs.values())
-    return PelvisLent() if target.real and working else PelvisAsWritten()
+    if target.real and working:
+        return [BodyLent(), PelvisLent()]
+    return [BodyAsWritten(), PelvisAsWritten()]
 
 
 def _arm_rules(shape: ArmShape, side: Side) -> list[Rule]:

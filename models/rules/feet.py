@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from enpointe.models.foot_positions import Footprint
 from enpointe.models.kinematics import SymbolicBody
 from enpointe.models.leg_target import FOOT_JOINTS, POINTED_DEG, InAir, OnPointe, Standing
+from enpointe.models.rules.balance import centroid
 from enpointe.models.rules.base import Kind, Rule, SidedRule, Symbols
 from enpointe.models.target import PoseTarget
 from enpointe.notation import Side
@@ -122,7 +123,11 @@ class FootTurnout(_FootRule):
 
 
 class OnTheTip(_FootRule):
-    """The tip of the toes stands on its mark and the toes point straight down: pointe."""
+    """The tip of the toes stands on its mark and the toes carry on the line of the leg: pointe.
+
+    They stand upright under a bent knee or a leg alone, and lean with straight legs that open to
+    both feet, as far as the line from hip to tip does.
+    """
 
     name: ClassVar[str] = "on the tip of the toes"
     unit: ClassVar[str] = "mm"
@@ -135,16 +140,25 @@ class OnTheTip(_FootRule):
         toes = body.frame(f"{self.side}_toe").rotation[:, 0]
         place = tip - ca.vertcat(symbols(f"{self.side}_tip", 2), 0)
         curl = body.joint(f"{self.side}_toe_raise") + radians(POINTE_TOES_DEG)
-        return ca.vertcat(place, toes[:2], curl)
+        return ca.vertcat(place, toes[:2] - symbols(f"{self.side}_lean", 2), curl)
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
-        figure = target.figure
+        side, figure = Side(self.side), target.figure
+        leg = target.legs[side]
         tip = self._footprint(target).point(figure.ball_forward + figure.toe_length)
-        return {f"{self.side}_tip": tip}
+        lean = np.zeros(2)
+        both = all(isinstance(other, Standing | OnPointe) for other in target.legs.values())
+        if both and isinstance(leg, OnPointe) and not leg.knee_bend:
+            c, s = cos(target.facing), sin(target.facing)
+            hip = float(figure.hips[side][1]) * np.array([-s, c])
+            lean = (tip - centroid(target.support) - hip) / (
+                figure.straight_leg + figure.foot_length
+            )
+        return {f"{self.side}_tip": tip, f"{self.side}_lean": lean}
 
 
-POINTE_TOES_DEG = 8.0
-"""What the toes add to the ankle so that the line from shin to toe is straight."""
+POINTE_TOES_DEG = -POINTED_DEG[-1]
+"""What the toes add to the ankle so that the line from shin to toe is straight, as in the air."""
 
 
 class PointedFoot(SidedRule):

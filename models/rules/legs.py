@@ -54,7 +54,7 @@ class KneeOverToe(SidedRule):
     unit: ClassVar[str] = "mm"
     bound: ClassVar[float] = 30.0
     kind: ClassVar[Kind] = Kind.PREFER
-    weight: ClassVar[float] = 20.0
+    weight: ClassVar[float] = 100.0
     source: ClassVar[str] = "ballet teaching (plie: knees over the toes)"
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
