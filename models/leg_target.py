@@ -89,7 +89,7 @@ class ToeOnFloor:
     Attributes:
         across: Unit normal, in the pelvis' horizontal plane, of the line that the toe points along,
             (2,): (0, 1) for devant and derriere, (1, 0) a la seconde.
-        ahead: -1 behind, +1 in front, 0 to the side; a first guess, not a rule.
+        ahead: -1 behind, +1 in front, 0 to the side.
         turnout: rad.
     """
 
@@ -222,10 +222,18 @@ def _knee_bend(leg: ResolvedLeg, style: Style) -> float:
     assert leg.support is not None
     degrees = {
         Bend.STRAIGHT: 0.0,
-        Bend.DEMI_PLIE: style.demi_plie_deg,
+        Bend.DEMI_PLIE: _demi_plie(leg, style),
         Bend.GRAND_PLIE: style.grand_plie_deg,
     }[leg.support.bend]
     return radians(style.demi_plie_deg if leg.knee is not None and not degrees else degrees)
+
+
+def _demi_plie(leg: ResolvedLeg, style: Style) -> float:
+    """A foot's length apart both heels stay down only in a shallower one."""
+    assert leg.support is not None
+    flat = leg.support.floor is FloorContact.FLAT
+    apart = leg.position is not None and leg.position.name == "fourth"
+    return style.demi_plie_in_fourth_deg if flat and apart else style.demi_plie_deg
 
 
 def _rise(leg: ResolvedLeg, style: Style) -> float:

@@ -25,6 +25,8 @@ class Style:
             supination of adults (AAOS).
         demi_plie_deg: Bend of the knee in a demi-plié; the heel stays down. No source prints it;
             ours leaves the ankle at 27 degrees of its 30 (Russell et al. 2010).
+        demi_plie_in_fourth_deg: The same with the feet one before the other, where the back ankle
+            is at the end of its range; ours.
         grand_plie_deg: Bend of the knee in a grand plié (135 +- 4.6, Fotaki 2024, 20 dancers), less
             what keeps the thighs level.
         grand_plie_rise_deg: How far the heels rise in it, but in second.
@@ -37,6 +39,7 @@ class Style:
     wrist_deg: float = 14.0
     palm_deg: float = 80.0
     demi_plie_deg: float = 58.0
+    demi_plie_in_fourth_deg: float = 50.0
     grand_plie_deg: float = 122.0
     grand_plie_rise_deg: float = 38.0
     real: bool = False

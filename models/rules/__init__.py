@@ -46,6 +46,7 @@ from enpointe.models.rules.legs import (
     LegTurnedOut,
     StretchedKnee,
     ToeAtTheLeg,
+    ToeAway,
     ToeOnTheFloor,
 )
 from enpointe.models.rules.stance import (
@@ -127,7 +128,7 @@ def _leg_rules(leg: LegTarget, side: Side) -> list[Rule]:
         ]
     rules = [PointedFoot(side), LegTurnedOut(side)]
     if isinstance(leg, ToeOnFloor):
-        return [ToeOnTheFloor(side), *rules]
+        return [ToeOnTheFloor(side), ToeAway(side), *rules]
     if isinstance(leg, ToeOnLeg):
         return [ToeAtTheLeg(side, leg.site), *rules]
     assert isinstance(leg, InAir)

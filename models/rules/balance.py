@@ -79,7 +79,7 @@ class WeightOverTheFoot(CentredWeight):
 
     name: ClassVar[str] = "weight over the foot"
     bound: ClassVar[float] = 70.0
-    weight: ClassVar[float] = 200.0
+    weight: ClassVar[float] = 400.0
     source: ClassVar[str] = "statics; the margin inside the sole is a rule of its own"
 
 

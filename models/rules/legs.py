@@ -25,6 +25,7 @@ __all__ = [
     "LegTurnedOut",
     "StretchedKnee",
     "ToeAtTheLeg",
+    "ToeAway",
     "ToeOnTheFloor",
 ]
 
@@ -162,6 +163,34 @@ class ToeOnTheFloor(SidedRule):
         return {
             f"{self.side}_across_line": np.array(leg.across),
             f"{self.side}_stretch": np.radians(2.0),
+            "girdle": target.upright.ravel(order="F"),
+        }
+
+
+class ToeAway(SidedRule):
+    """The toe of a tendu is out on the side that it points to: t . d - 0.2 m >= 0.
+
+    The line that the toe lies on goes through under the body to the other side.
+    """
+
+    name: ClassVar[str] = "toe away from the body"
+    unit: ClassVar[str] = "mm"
+    bound: ClassVar[float] = 0.0
+    kind: ClassVar[Kind] = Kind.AT_LEAST
+    source: ClassVar[str] = "Grant, battement tendu"
+
+    def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
+        upright = ca.reshape(symbols("girdle", 9), 3, 3)
+        tip = body.site(f"{self.side}_toe_tip") - body.frame("pelvis").position
+        return ca.dot(symbols(f"{self.side}_towards", 2), (upright.T @ tip)[:2]) - 0.2
+
+    def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
+        leg = target.legs[Side(self.side)]
+        assert isinstance(leg, ToeOnFloor)
+        outward = 1.0 if self.side == "left" else -1.0
+        towards = [leg.ahead, 0.0] if leg.ahead else [0.0, outward]
+        return {
+            f"{self.side}_towards": np.array(towards),
             "girdle": target.upright.ravel(order="F"),
         }
 
