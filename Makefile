@@ -76,7 +76,7 @@ imports: wheel-tools
 	cd $(WHEEL_VENV) && bin/lint-imports --no-cache --config $(CURDIR)/pyproject.toml
 
 bench: setup
-	@for script in $(sort $(wildcard benchmarks/*.py)); do \
+	@for script in $(sort $(wildcard benchmarks/[!_]*.py)); do \
 		echo "== $$script"; $(BIN)/python $$script || exit 1; done
 
 lock: $(VENV)/.dependencies

@@ -54,13 +54,7 @@ def perform(
     elapsed = perf_counter() - start
     if progress is not None:
         progress(motion.duration, motion.duration)
-    return Recording(
-        model=motion.model,
-        reference=motion,
-        fault=body.fault,
-        wall_time=elapsed,
-        **tape.arrays(),  # type: ignore[arg-type]
-    )
+    return tape.recording(motion, body.fault, elapsed)
 
 
 class _Tape:
@@ -75,16 +69,20 @@ class _Tape:
         for name, value in observed.items():
             self._observed.setdefault(name, []).append(value)
 
-    def arrays(self) -> dict[str, object]:
+    def recording(self, reference: Motion, fault: str | None, wall_time: float) -> Recording:
         states, commands = self._states, self._commands
-        return {
-            "time": np.array([s.time for s in states]),
-            "qpos": np.array([s.qpos for s in states]),
-            "qvel": np.array([s.qvel for s in states]),
-            "effort": np.array([s.effort for s in states]),
-            "age": np.array([s.age for s in states]),
-            "valid": np.array([s.valid for s in states]),
-            "position": np.array([c.position for c in commands]),
-            "torque": np.array([c.torque for c in commands]),
-            "channels": {name: np.array(rows) for name, rows in self._observed.items()},
-        }
+        return Recording(
+            model=reference.model,
+            reference=reference,
+            time=np.array([s.time for s in states]),
+            qpos=np.array([s.qpos for s in states]),
+            qvel=np.array([s.qvel for s in states]),
+            effort=np.array([s.effort for s in states]),
+            position=np.array([c.position for c in commands]),
+            torque=np.array([c.torque for c in commands]),
+            age=np.array([s.age for s in states]),
+            valid=np.array([s.valid for s in states]),
+            channels={name: np.array(rows) for name, rows in self._observed.items()},
+            fault=fault,
+            wall_time=wall_time,
+        )

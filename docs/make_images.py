@@ -51,7 +51,7 @@ import enpointe  # noqa: E402
 from enpointe.models import dancer_model  # noqa: E402
 from enpointe.motion import PRESETS, logistic  # noqa: E402
 from enpointe.motion.wrist import wrist_paths  # noqa: E402
-from enpointe.notation import Side, names, stave_svg  # noqa: E402
+from enpointe.notation import Score, Side, names, stave_svg  # noqa: E402
 
 plt.rcParams.update(
     {"font.family": "DejaVu Sans", "font.size": 8.5, "text.color": INK, "axes.edgecolor": SOFT}
@@ -182,9 +182,9 @@ def draw_frame(
     axes.text(px, py, count.text, family="DejaVu Serif", size=size, ha="center")
 
 
-def draw_stave(axes: Axes, columns: list[float], y: float, scale: float, score: object) -> None:
+def draw_stave(axes: Axes, columns: list[float], y: float, scale: float, score: Score) -> None:
     """The first frames of a score on five lines, a frame over each column."""
-    svg = ElementTree.fromstring(stave_svg(score))  # type: ignore[arg-type]
+    svg = ElementTree.fromstring(stave_svg(score))
     groups = {g.get("id"): g for g in svg.iter(f"{_SVG}g") if g.get("class") == "frame"}
     lines = [p for p in svg.iter(f"{_SVG}path") if p.get("class") == "stave-line"]
     top = float(outline(lines[0].attrib["d"]).vertices[0][1])
@@ -195,7 +195,7 @@ def draw_stave(axes: Axes, columns: list[float], y: float, scale: float, score: 
         axes.plot([left, right], [level, level], color=INK, linewidth=0.8)
     for bar in (left, 0.5 * (columns[0] + columns[1]), right):
         axes.plot([bar, bar], [y, y + 4 * SPACE * scale], color=INK, linewidth=1.2)
-    for row, number in enumerate(score.metre):  # type: ignore[attr-defined]
+    for row, number in enumerate(score.metre):
         level = y + (1 + 2 * row) * SPACE * scale
         axes.text(
             left + 24,

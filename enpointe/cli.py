@@ -6,16 +6,25 @@ import os
 import sys
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 import enpointe
 from enpointe.console import Console
 from enpointe.errors import EnpointeError
-
-if TYPE_CHECKING:
-    from enpointe.models import Anthropometry, Style
+from enpointe.options import (
+    DancerOptions,
+    Effort,
+    Json,
+    OutputOptions,
+    Quiet,
+    Score,
+    StyledDancerOptions,
+    Tempo,
+    Video,
+    unbundled,
+)
 
 __all__ = ["app", "main"]
 
@@ -40,56 +49,23 @@ class BodyName(StrEnum):
     DANCER = "dancer"
 
 
-class SexName(StrEnum):
-    FEMALE = "female"
-    MALE = "male"
-
-
-Score = Annotated[str, typer.Argument(help="A shipped score's name, or a .bmn file.")]
-Effort = Annotated[
-    str | None,
-    typer.Option(
-        help="natural, happy, sad, angry or afraid, each with its tempo; or numbers:"
-        " time=-3.5,weight=.41,space=1. Natural at the score's tempo if left out."
-    ),
-]
-Tempo = Annotated[
-    float | None, typer.Option(help="Beats a minute; the effort's or the score's if left out.")
-]
-Out = Annotated[
-    Path | None, typer.Option(help="Folder to write to; named after the input if left out.")
-]
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
-Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing but errors.")]
-Seed = Annotated[int, typer.Option(help="Seed of what is random; in this verb nothing is.")]
-Video = Annotated[bool, typer.Option(help="Film the dance (the slowest part).")]
-Height = Annotated[float, typer.Option(help="The dancer's height, m.")]
-Mass = Annotated[float, typer.Option(help="The dancer's mass, kg.")]
-SexOption = Annotated[SexName, typer.Option(help="Whose proportions the dancer has.")]
-Turnout = Annotated[float, typer.Option(help="Turnout of each leg, degrees.")]
-
-
 @app.command()
+@unbundled
 def perform(
     source: Score,
+    *,
     effort: Effort = None,
     tempo: Tempo = None,
     controller: Annotated[
         ControllerName, typer.Option(help="pd dances under gravity; kinematic only moves.")
     ] = ControllerName.PD,
     body: Annotated[BodyName, typer.Option(help="Who dances.")] = BodyName.DANCER,
-    height: Height = 1.68,
-    mass: Mass = 54.0,
-    sex: SexOption = SexName.FEMALE,
-    turnout: Turnout = 66.0,
-    out: Out = None,
+    dancer: StyledDancerOptions,
     video: Video = True,
-    json: Json = False,
-    quiet: Quiet = False,
-    seed: Seed = 0,
+    output: OutputOptions,
 ) -> int:
     """Dance a score under gravity, and write a report of it."""
-    console = Console(json=json, quiet=quiet)
+    console = output.console()
     with console.progress() as progress:
         score = enpointe.load_score(source)
         dance = enpointe.perform(
@@ -97,11 +73,11 @@ def perform(
             effort=effort,
             tempo=tempo,
             controller=controller.value,
-            style=_style(turnout),
-            dancer=_dancer(height, mass, sex),
+            style=dancer.style(),
+            dancer=dancer.anthropometry(),
             progress=progress,
         )
-        folder = _folder(out, source)
+        folder = output.folder(source)
         report = enpointe.write_report(dance, folder, video=video, progress=progress)
         files = {**report, **dance.save(folder)}
     console.warn(report.warning)
@@ -110,33 +86,29 @@ def perform(
 
 
 @app.command()
+@unbundled
 def compare(
     source: Score,
+    *,
     effort: Effort = None,
     tempo: Tempo = None,
-    height: Height = 1.68,
-    mass: Mass = 54.0,
-    sex: SexOption = SexName.FEMALE,
-    turnout: Turnout = 66.0,
-    out: Out = None,
+    dancer: StyledDancerOptions,
     video: Video = True,
-    json: Json = False,
-    quiet: Quiet = False,
-    seed: Seed = 0,
+    output: OutputOptions,
 ) -> int:
     """Dance a score by slerp, by expressive kinematics and by physics, side by side."""
-    console = Console(json=json, quiet=quiet)
+    console = output.console()
     with console.progress() as progress:
         score = enpointe.load_score(source)
         comparison = enpointe.compare(
             score,
             effort=effort,
             tempo=tempo,
-            style=_style(turnout),
-            dancer=_dancer(height, mass, sex),
+            style=dancer.style(),
+            dancer=dancer.anthropometry(),
             progress=progress,
         )
-        folder = _folder(out, f"{Path(source).stem}-compared")
+        folder = output.folder(f"{Path(source).stem}-compared")
         files = enpointe.write_report(comparison, folder, video=video, progress=progress)
     console.warn(files.warning)
     console.show(comparison.summary(), files, folder)
@@ -144,6 +116,7 @@ def compare(
 
 
 @app.command()
+@unbundled
 def pose(
     source: Annotated[
         str | None,
@@ -152,18 +125,13 @@ def pose(
             " named, a pose (FILE.npy) or a moment of a motion (FILE.npz@SECONDS)."
         ),
     ] = None,
+    *,
     names: Annotated[bool, typer.Option("--list", help="List the vocabulary.")] = False,
-    height: Height = 1.68,
-    mass: Mass = 54.0,
-    sex: SexOption = SexName.FEMALE,
-    turnout: Turnout = 66.0,
-    out: Out = None,
-    json: Json = False,
-    quiet: Quiet = False,
-    seed: Seed = 0,
+    dancer: StyledDancerOptions,
+    output: OutputOptions,
 ) -> int:
     """Solve key poses; say which rules of ballet each keeps and breaks."""
-    console = Console(json=json, quiet=quiet)
+    console = output.console()
     if names:
         from enpointe.notation import names as vocabulary
         from enpointe.notation import shipped_scores
@@ -175,15 +143,15 @@ def pose(
     from enpointe.notating import is_seen, see
 
     if is_seen(source):
-        seen = see(source, dancer=_dancer(height, mass, sex))
-        if json:
+        seen = see(source, dancer=dancer.anthropometry())
+        if output.json:
             console.print_json(seen.summary())
         else:
             console.print(f"{seen.name}: {seen.recognition.name}")
         return DONE if seen.recognition.named else NO
     with console.progress() as progress:
-        poses = enpointe.pose(source, style=_style(turnout), dancer=_dancer(height, mass, sex))
-        folder = _folder(out, source)
+        poses = enpointe.pose(source, style=dancer.style(), dancer=dancer.anthropometry())
+        folder = output.folder(source)
         files = enpointe.write_report(poses, folder, progress=progress)
     console.warn(files.warning)
     console.show(poses.summary(), files, folder)
@@ -191,28 +159,25 @@ def pose(
 
 
 @app.command()
+@unbundled
 def notate(
     motion: Annotated[str, typer.Argument(help="A motion file (.npz, as perform writes it).")],
+    *,
     tempo: Annotated[
         float | None, typer.Option(help="Beats a minute; estimated if left out.")
     ] = None,
     metre: Annotated[str, typer.Option(help="Beats in a bar, and their note value.")] = "4/4",
-    height: Height = 1.68,
-    mass: Mass = 54.0,
-    sex: SexOption = SexName.FEMALE,
-    out: Out = None,
-    json: Json = False,
-    quiet: Quiet = False,
-    seed: Seed = 0,
+    dancer: DancerOptions,
+    output: OutputOptions,
 ) -> int:
     """Read a motion back into a score, and draw its stave."""
-    console = Console(json=json, quiet=quiet)
+    console = output.console()
     notation = enpointe.notate(
-        motion, tempo=tempo, metre=_metre(metre), dancer=_dancer(height, mass, sex)
+        motion, tempo=tempo, metre=_metre(metre), dancer=dancer.anthropometry()
     )
-    folder = _folder(out, motion)
+    folder = output.folder(motion)
     files = notation.save(folder, Path(motion).stem)
-    if json:
+    if output.json:
         console.show(notation.summary(), files, folder)
     else:
         for each in notation.notated.frames:
@@ -274,10 +239,6 @@ def _refuse(message: str) -> int:
     return BAD_INPUT
 
 
-def _folder(out: Path | None, source: str) -> Path:
-    return out if out is not None else Path(Path(source).stem.strip().replace(" ", "-") or "out")
-
-
 def _metre(text: str) -> tuple[int, int]:
     pulses, _, value = text.partition("/")
     if not (pulses.isdecimal() and value.isdecimal() and 1 <= int(pulses) <= 32):
@@ -285,15 +246,3 @@ def _metre(text: str) -> tuple[int, int]:
     if int(value) not in (1, 2, 4, 8, 16):
         raise EnpointeError(f"{text!r} is no metre; its notes are 1, 2, 4, 8 or 16")
     return int(pulses), int(value)
-
-
-def _style(turnout: float) -> Style:
-    from enpointe.models.style import Style
-
-    return Style(turnout_deg=turnout)
-
-
-def _dancer(height: float, mass: float, sex: SexName) -> Anthropometry:
-    from enpointe.models.anthropometry import Anthropometry, Sex
-
-    return Anthropometry(height, mass, Sex(sex.value))

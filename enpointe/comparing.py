@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from enpointe.figures import ComparisonFigures
 from enpointe.notation import Score, Side, load_score
 from enpointe.performing import Performance, Progress, dance, prepare, silent
 
@@ -63,7 +64,7 @@ class Comparison:
         """Whether the physical dancer got to the end."""
         return all(p.completed for p in self.performances.values())
 
-    def summary(self) -> dict[str, object]:
+    def summary(self) -> ComparisonFigures:
         """The figures that `--json` prints."""
         return {
             "variants": {name: p.summary() for name, p in self.performances.items()},

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import rich.console
 from rich.console import RenderableType
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from enpointe.performing import Progress as Report
@@ -45,13 +45,13 @@ class Console:
             console=rich.console.Console(stderr=True),
             transient=True,
         )
-        tasks: dict[str, object] = {}
+        tasks: dict[str, TaskID] = {}
         with bars:
 
             def show(task: str, done: float, total: float) -> None:
                 if task not in tasks:
                     tasks[task] = bars.add_task(task, total=total)
-                bars.update(tasks[task], completed=done, total=total)  # type: ignore[arg-type]
+                bars.update(tasks[task], completed=done, total=total)
 
             yield show
 
@@ -114,12 +114,26 @@ def _flat(figures: Mapping[str, object], prefix: str = "") -> Iterator[tuple[str
             yield from _flat(value, f"{label}.")
         elif name == "poses" and isinstance(value, list):
             for entry in value:
-                broken = [r["rule"] for r in entry["rules"] if not r["held"]]
-                verdict = f"broken: {', '.join(broken)}" if broken else "all rules held"
-                yield entry["name"], f"{verdict} ({entry['solve_ms']:.0f} ms)"
+                yield entry["name"], _verdict(entry)
         elif isinstance(value, float):
             yield label, f"{value:.4g}"
         elif isinstance(value, list):
             yield label, ", ".join(str(v) for v in value) or "none"
         else:
             yield label, "none" if value is None else str(value)
+
+
+def _verdict(entry: Mapping[str, Any]) -> str:
+    """What a solved pose keeps, what it breaks and by how much, and how she cheats."""
+    rules = entry["rules"]
+    broken = [r for r in rules if not r["held"]]
+    words = f"{len(rules) - len(broken)} of {len(rules)} rules held in {entry['solve_ms']:.0f} ms"
+    if not broken:
+        words = f"all {len(rules)} rules held in {entry['solve_ms']:.0f} ms"
+    for rule in broken:
+        limit = f"at {'least' if rule['at_least'] else 'most'} {rule['bound']:g}"
+        words += f"\nbroken: {rule['rule']}, {rule['value']:.1f} {rule['unit']} ({limit})"
+    if entry["cheats"]:
+        cheats = (f"{c['name']} {c['value']:.0f} {c['unit']}" for c in entry["cheats"])
+        words += f"\ncheats: {', '.join(cheats)}"
+    return words

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from enpointe.errors import EnpointeError
+from enpointe.figures import PerformanceFigures, PhysicalFigures
 from enpointe.notation import Score, load_score
 
 if TYPE_CHECKING:
@@ -101,13 +102,10 @@ class Performance:
             self.recording.save(files["recording"])
         return files
 
-    def summary(self) -> dict[str, object]:
+    def summary(self) -> PerformanceFigures:
         """The figures that `--json` prints, SI units; the names are a promise to scripts."""
-        from enpointe.motion.arrival import danced_tempo
-
-        danced = self.danced
         fit = self.danced_fit()
-        figures: dict[str, object] = {
+        figures: PerformanceFigures = {
             "title": self.score.title,
             "controller": self.controller,
             "effort": {
@@ -118,24 +116,25 @@ class Performance:
             },
             "tempo": self.choreography.tempo,
             "completed": self.completed,
-            "duration": danced.duration,
+            "duration": self.danced.duration,
             "rules_broken": [f"{pose.name}: {words}" for pose, words in self.broken],
             "logistic": None if fit is None else {"b": fit.time, "x0": fit.weight, "rms": fit.rms},
         }
         if self.recording is not None and self.measures is not None:
-            kept, lateness = danced_tempo(danced, self.motion)
-            figures |= {
-                "tempo_danced": kept if isfinite(kept) else None,
-                "lateness_max": lateness if isfinite(lateness) else None,
-            }
-            figures |= _physical_figures(self.recording, self.measures, self.shortfall)
+            physical = _physical_figures(self.recording, self.measures, self.shortfall)
+            figures = {**figures, **physical}
         return figures
 
 
 def _physical_figures(
     recording: Recording, measures: Measures, shortfall: float | None
-) -> dict[str, object]:
+) -> PhysicalFigures:
+    from enpointe.motion.arrival import danced_tempo
+
+    kept, lateness = danced_tempo(recording.as_motion(), recording.reference)
     return {
+        "tempo_danced": kept if isfinite(kept) else None,
+        "lateness_max": lateness if isfinite(lateness) else None,
         "fell_at": measures.fell_at,
         "shortfall_max": shortfall,
         "fault": recording.fault,

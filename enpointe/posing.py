@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from enpointe.errors import EnpointeError
+from enpointe.figures import PosesFigures
 from enpointe.notation import Score, load_score, names, parse_score, shipped_scores
 from enpointe.notation.vocabulary import find_arms, find_feet, find_pose
 from enpointe.performing import check_reach
@@ -39,7 +40,7 @@ class Poses:
         """Whether every rule holds in every pose."""
         return all(key_pose.held for key_pose in self.key_poses)
 
-    def summary(self) -> dict[str, object]:
+    def summary(self) -> PosesFigures:
         """The figures that `--json` prints."""
         from enpointe.models.recognition import recognise
 

@@ -197,10 +197,6 @@ class Skeleton:
         return self.ankle_height + self.shank + self.thigh
 
     @property
-    def shoulder_height(self) -> float:
-        return self.hip_height + self.waist_height + self.torso_length - self.shoulder_drop
-
-    @property
     def straight_arm(self) -> float:
         """Shoulder to wrist (Neagle 2005 eq. 4.4)."""
         return self.upper_arm + self.forearm

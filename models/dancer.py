@@ -129,39 +129,42 @@ def _set_torso_inertia(torso: mujoco.MjsBody, skeleton: Skeleton) -> None:
     )
 
 
+def _hang(
+    parent: mujoco.MjsBody,
+    place: tuple[float, float, float],
+    measures: Anthropometry,
+    side: str,
+    segment: str,
+    joint: str,
+    hinges: tuple[Hinge, ...],
+) -> mujoco.MjsBody:
+    """One segment of a limb, hanging from its joint at a place of its parent."""
+    body = parent.add_body(name=f"{side}_{segment}", pos=place)
+    _add_hinges(body, hinges, side)
+    _set_hanging_inertia(body, measures.segment(segment))
+    body.add_site(group=SITE_GROUP, name=f"{side}_{joint}", pos=[0, 0, 0])
+    return body
+
+
 def _add_arm(torso: mujoco.MjsBody, skeleton: Skeleton, side: str) -> None:
     s = side_sign(side)
     measures = skeleton.measures
     shoulder = (0, s * skeleton.shoulder_half_width, skeleton.torso_length - skeleton.shoulder_drop)
-    upper = torso.add_body(name=f"{side}_upper_arm", pos=shoulder)
-    _add_hinges(upper, anatomy.SHOULDER, side)
-    _set_hanging_inertia(upper, measures.segment("upper_arm"))
-    upper.add_site(group=SITE_GROUP, name=f"{side}_shoulder", pos=[0, 0, 0])
-
-    forearm = upper.add_body(name=f"{side}_forearm", pos=[0, 0, -skeleton.upper_arm])
-    _add_hinges(forearm, anatomy.ELBOW, side)
-    _set_hanging_inertia(forearm, measures.segment("forearm"))
-    forearm.add_site(group=SITE_GROUP, name=f"{side}_elbow", pos=[0, 0, 0])
-
-    hand = forearm.add_body(name=f"{side}_hand", pos=[0, 0, -skeleton.forearm])
-    _add_hinges(hand, anatomy.WRIST, side)
-    _set_hanging_inertia(hand, measures.segment("hand"))
-    hand.add_site(group=SITE_GROUP, name=f"{side}_wrist", pos=[0, 0, 0])
+    upper = _hang(torso, shoulder, measures, side, "upper_arm", "shoulder", anatomy.SHOULDER)
+    elbow = (0, 0, -skeleton.upper_arm)
+    forearm = _hang(upper, elbow, measures, side, "forearm", "elbow", anatomy.ELBOW)
+    wrist = (0, 0, -skeleton.forearm)
+    hand = _hang(forearm, wrist, measures, side, "hand", "wrist", anatomy.WRIST)
     hand.add_site(group=SITE_GROUP, name=f"{side}_fingertips", pos=[0, 0, -0.101 * measures.height])
 
 
 def _add_leg(pelvis: mujoco.MjsBody, skeleton: Skeleton, side: str) -> None:
     s = side_sign(side)
     measures = skeleton.measures
-    thigh = pelvis.add_body(name=f"{side}_thigh", pos=[0, s * skeleton.hip_half_width, 0])
-    _add_hinges(thigh, anatomy.HIP, side)
-    _set_hanging_inertia(thigh, measures.segment("thigh"))
-    thigh.add_site(group=SITE_GROUP, name=f"{side}_hip", pos=[0, 0, 0])
-
-    shank = thigh.add_body(name=f"{side}_shank", pos=[0, 0, -skeleton.thigh])
-    _add_hinges(shank, anatomy.KNEE, side)
-    _set_hanging_inertia(shank, measures.segment("shank"))
-    shank.add_site(group=SITE_GROUP, name=f"{side}_knee", pos=[0, 0, 0])
+    hip = (0, s * skeleton.hip_half_width, 0)
+    thigh = _hang(pelvis, hip, measures, side, "thigh", "hip", anatomy.HIP)
+    knee = (0, 0, -skeleton.thigh)
+    shank = _hang(thigh, knee, measures, side, "shank", "knee", anatomy.KNEE)
 
     foot = shank.add_body(name=f"{side}_foot", pos=[0, 0, -skeleton.shank])
     _add_hinges(foot, anatomy.ANKLE, side)

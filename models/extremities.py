@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from enpointe.errors import ScoreError
+from enpointe.models.anatomy import side_sign
 from enpointe.models.figure import Figure
 from enpointe.notation import Depth, Side, Sign
 
@@ -68,7 +69,7 @@ def extremity(
     """
     centre = limb_root(figure, side, leg=leg) if root is None else root
     origin = figure.pelvis_origin if leg else figure.torso_origin
-    outward = 1.0 if side is Side.LEFT else -1.0
+    outward = side_sign(side)
     z = figure.height(sign.height, leg=leg) - origin[2]
     rise = z - centre[2]
     y = outward * sign.width * figure.full_width(leg=leg)
@@ -122,7 +123,7 @@ def elbow_of_rounded_arm(figure: Figure, side: Side, wrist: Vector) -> Vector:
     reach2 = float(u @ u)
     inner = (reach2 + figure.upper_arm**2 - figure.forearm**2) / (2 * reach2) * u
     aside = sqrt(max(figure.upper_arm**2 - float(inner @ inner), 0.0))
-    outward = 1.0 if side is Side.LEFT else -1.0
+    outward = side_sign(side)
     level = outward * np.cross([0.0, 0.0, 1.0], u)
     norm = float(np.linalg.norm(level))
     if norm < 1e-9:

@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from enpointe.models.figure import Figure
 from enpointe.models.foot_positions import Footprint
-from enpointe.models.joints import Joints
+from enpointe.models.joints import Joints, angle_between
 from enpointe.notation import Bend, FloorContact, Side
 
 __all__ = ["Footing", "footing", "footprint_of", "knee_bend"]
@@ -84,7 +84,7 @@ def knee_bend(joints: Joints, side: Side) -> float:
     """Bend of a knee, degrees; 0 is straight."""
     thigh = joints.between(f"{side}_hip", f"{side}_knee")
     shank = joints.between(f"{side}_knee", f"{side}_ankle")
-    return degrees(float(np.arccos(np.clip(thigh @ shank, -1.0, 1.0))))
+    return angle_between(thigh, shank)
 
 
 def footprint_of(joints: Joints, side: Side, contact: FloorContact, figure: Figure) -> Footprint:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import degrees
 
 import mujoco
 import numpy as np
@@ -15,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from enpointe.errors import ModelError, PoseError
 
-__all__ = ["JOINTS", "Joints"]
+__all__ = ["JOINTS", "Joints", "angle_between"]
 
 Vector = NDArray[np.float64]
 JOINTS = (
@@ -92,3 +93,8 @@ class Joints:
         """Unit vector from one point to another, (3,)."""
         along = self.points[end] - self.points[start]
         return np.asarray(along / max(float(np.linalg.norm(along)), 1e-9))
+
+
+def angle_between(one: Vector, other: Vector) -> float:
+    """Angle between two unit vectors, degrees."""
+    return degrees(float(np.arccos(np.clip(one @ other, -1.0, 1.0))))

@@ -15,6 +15,7 @@ from enpointe.models.foot_positions import DEFAULT_TURNOUT_DEG
 from enpointe.models.footing import Footing, footing
 from enpointe.models.joints import Joints
 from enpointe.notation import Orientation, Side
+from enpointe.notation.stage import shorter_way
 
 __all__ = ["LimbDirections", "orientation"]
 
@@ -89,7 +90,7 @@ class LimbDirections:
             head=orientation(joints.torso.T @ joints.head),
             body=orientation(girdle.T @ joints.torso),
             pelvis=orientation(upright.T @ joints.pelvis),
-            facing_degrees=_wrapped(degrees(facing)),
+            facing_degrees=shorter_way(degrees(facing)),
             lent=lent,
             feet=feet,
         )
@@ -121,7 +122,7 @@ def _facing(joints: Joints, feet: Mapping[Side, Footing]) -> float:
     pelvis = radians(orientation(joints.pelvis).turn)
     torso = radians(orientation(joints.torso).turn)
     bearing = [side for side in Side if feet[side].bears]
-    if len(bearing) != 1 or abs(_wrapped(degrees(torso - pelvis))) < _SQUARE_DEG:
+    if len(bearing) != 1 or abs(shorter_way(degrees(torso - pelvis))) < _SQUARE_DEG:
         return pelvis
     (side,) = bearing
     if feet[side.other].clearance > _HIGH:
@@ -131,11 +132,6 @@ def _facing(joints: Joints, feet: Mapping[Side, Footing]) -> float:
     from_foot = degrees(float(np.arctan2(foot[1], foot[0]))) - outward
 
     def disagreement(heading: float) -> float:
-        return abs(_wrapped(degrees(heading) - from_foot))
+        return abs(shorter_way(degrees(heading) - from_foot))
 
     return min((pelvis, torso), key=disagreement)
-
-
-def _wrapped(angle: float) -> float:
-    """The same direction in degrees, above -180 and up to 180."""
-    return 180.0 - (180.0 - angle) % 360.0

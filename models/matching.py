@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from enpointe.models.footing import TOUCHING
+from enpointe.models.joints import angle_between
 from enpointe.models.limbs import LimbDirections
 from enpointe.models.references import LegReference, heights_of
 from enpointe.models.target import turn_tilt_bend
@@ -29,11 +30,9 @@ __all__ = [
     "ALTERNATIVES",
     "Match",
     "Position",
-    "arms_name",
     "at_height",
     "at_listed_height",
     "both_arms",
-    "feet_name",
     "leg_names",
     "leg_parts",
     "limb_error",
@@ -175,7 +174,7 @@ def limb_error(
 ) -> tuple[float, float]:
     """Angles in degrees: between the upper bones, and between the lower ones when those agree."""
     carried = _carried(wanted_lower, wanted_upper, upper)
-    return _angle(upper, wanted_upper), _angle(lower, carried)
+    return angle_between(upper, wanted_upper), angle_between(lower, carried)
 
 
 def _carried(vector: Vector, start: Vector, end: Vector) -> Vector:
@@ -186,10 +185,6 @@ def _carried(vector: Vector, start: Vector, end: Vector) -> Vector:
     axis = np.cross(start, end)
     across = np.cross(axis, vector)
     return np.asarray(vector + across + np.cross(axis, across) / (1.0 + cosine))
-
-
-def _angle(one: Vector, other: Vector) -> float:
-    return degrees(float(np.arccos(np.clip(one @ other, -1.0, 1.0))))
 
 
 def of_left(vector: Vector, side: Side) -> Vector:
@@ -205,15 +200,6 @@ def turned(found: Orientation, wanted: Orientation, mirrored: bool) -> float:
         turn_tilt_bend(np.radians([each.turn, each.tilt, each.bend])) for each in (found, wanted)
     )
     return degrees(float(Rotation.from_matrix(one.T @ other).magnitude()))
-
-
-def arms_name(position: ArmsPosition) -> str:
-    return position.name + (f" {position.leading} leads" if position.leading else "")
-
-
-def feet_name(position: FeetPosition) -> str:
-    opened = " open" if position.open else ""
-    return position.name + opened + (f" {position.front} front" if position.front else "")
 
 
 def leg_names(position: LegPosition) -> tuple[str, ...]:

@@ -15,6 +15,7 @@ import mujoco
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from enpointe.models.anatomy import side_sign
 from enpointe.models.extremities import elbow_of_rounded_arm
 from enpointe.models.figure import ROUNDED_ELBOW_DEG, STRETCHED_DEG, Figure
 from enpointe.models.foot_positions import (
@@ -23,7 +24,7 @@ from enpointe.models.foot_positions import (
     footprints,
 )
 from enpointe.models.footing import footprint_of
-from enpointe.models.joints import Joints
+from enpointe.models.joints import Joints, angle_between
 from enpointe.models.limbs import LimbDirections
 from enpointe.notation import (
     Depth,
@@ -196,7 +197,7 @@ def _arm(limbs: LimbDirections, side: Side, figure: Figure) -> tuple[Sign, Sign 
     shoulder = figure.shoulders[side]
     elbow = shoulder + figure.upper_arm * limbs.upper_arm[side]
     wrist = elbow + figure.forearm * limbs.forearm[side]
-    bend = _angle(limbs.upper_arm[side], limbs.forearm[side])
+    bend = angle_between(limbs.upper_arm[side], limbs.forearm[side])
     sign = _sign(wrist, shoulder, side, figure, leg=False)
     if bend < STRAIGHT_ARM_DEG:
         return replace(sign, straight=True), None
@@ -215,7 +216,7 @@ def _leg(limbs: LimbDirections, side: Side, figure: Figure) -> ReadLeg:
     hip = figure.hips[side]
     knee = hip + figure.thigh * limbs.thigh[side]
     ankle = knee + figure.shank * limbs.shank[side]
-    bend = _angle(limbs.thigh[side], limbs.shank[side])
+    bend = angle_between(limbs.thigh[side], limbs.shank[side])
     support = None if foot.floor is None else Support(foot.floor, foot.bend)
     if foot.bears:
         return ReadLeg(
@@ -238,14 +239,10 @@ def _leg(limbs: LimbDirections, side: Side, figure: Figure) -> ReadLeg:
 def _sign(point: Vector, root: Vector, side: Side, figure: Figure, *, leg: bool) -> Sign:
     """The sign of a point in the girdle's frame, its depth seen from `root`."""
     origin = figure.pelvis_origin if leg else figure.torso_origin
-    outward = 1.0 if side is Side.LEFT else -1.0
+    outward = side_sign(side)
     ahead = float(point[0] - root[0])
     level = LEVEL * float(np.linalg.norm(point - root))
     depth = Depth.LEVEL if abs(ahead) < level else Depth.FRONT if ahead > 0 else Depth.BEHIND
     width = outward * float(point[1]) / figure.full_width(leg=leg)
     height = figure.line(float(point[2] + origin[2]), leg=leg)
     return Sign(width, height, depth)
-
-
-def _angle(first: Vector, last: Vector) -> float:
-    return degrees(float(np.arccos(np.clip(first @ last, -1.0, 1.0))))

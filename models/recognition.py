@@ -23,11 +23,9 @@ from enpointe.models.limbs import LimbDirections
 from enpointe.models.matching import (
     ALTERNATIVES,
     Match,
-    arms_name,
     at_height,
     at_listed_height,
     both_arms,
-    feet_name,
     leg_names,
     leg_parts,
     limb_error,
@@ -51,6 +49,7 @@ from enpointe.notation import (
     Side,
 )
 from enpointe.notation.vocabulary import POSES, PoseEntry
+from enpointe.notation.writer import arms_name, feet_name
 
 __all__ = ["Match", "Recogniser", "Recognition", "recognise", "recognise_joints", "recogniser_of"]
 

@@ -9,6 +9,7 @@ from math import cos, radians, sin
 import numpy as np
 from numpy.typing import NDArray
 
+from enpointe.models.anatomy import side_sign
 from enpointe.models.extremities import extremity
 from enpointe.models.figure import Figure
 from enpointe.models.foot_positions import Footprint, footprints
@@ -91,7 +92,7 @@ class StanceTracker:
         length = self._figure.straight_leg + self._figure.ankle_height
         floor = Sign(sign.width, 1.0, sign.depth)
         ankle = extremity(self._figure, side, floor, length, leg=True, gives=True)
-        outward = 1.0 if side is Side.LEFT else -1.0
+        outward = side_sign(side)
         return Footprint(ankle[:2], outward * radians(self._turnout))
 
     def _anchored(self, layout: Mapping[Side, Footprint], facing: float) -> NDArray[np.float64]:

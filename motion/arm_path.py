@@ -21,6 +21,7 @@ reach of an elbow that is not quite straight, as the same paragraph demands.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import acos, atan2, cos, pi, radians, sin, sqrt
 
 import numpy as np
@@ -42,7 +43,7 @@ _STILL = 0.02
 """Places nearer than this (m) are one place: the arm waits."""
 _NARROW = 0.30
 """A wrist is in front of the body when it is nearer to the centre line than this (m)."""
-_SAMPLES = 241
+_PARAMETERS = np.linspace(0.0, 1.0, 241)
 
 
 @dataclass(frozen=True)
@@ -63,20 +64,17 @@ class ArmPath:
     end: ArmTarget
     space: float
 
-    def __post_init__(self) -> None:
-        """Tabulate the share of the way against the parameter, for `at_share`."""
-        parameter = np.linspace(0.0, 1.0, _SAMPLES)
-        points = np.array([self.wrist(k) for k in parameter])
+    @cached_property
+    def _walked(self) -> Vector:
+        """Length of the way up to each of `_PARAMETERS`, m."""
+        points = np.array([self.wrist(k) for k in _PARAMETERS])
         steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
-        walked = np.concatenate([[0.0], np.cumsum(steps)])
-        object.__setattr__(self, "_length", float(walked[-1]))
-        share = walked / walked[-1] if walked[-1] > 0 else parameter
-        object.__setattr__(self, "_table", (share, parameter))
+        return np.concatenate([[0.0], np.cumsum(steps)])
 
     @property
     def length(self) -> float:
         """m."""
-        return float(self._length)  # type: ignore[attr-defined]
+        return float(self._walked[-1])
 
     @property
     def waits(self) -> bool:
@@ -98,8 +96,9 @@ class ArmPath:
 
     def at_share(self, share: float) -> float:
         """The path parameter where the wrist has gone `share` of the way's length."""
-        shares, parameters = self._table  # type: ignore[attr-defined]
-        return float(np.interp(share, shares, parameters))
+        walked, length = self._walked, self.length
+        shares = walked / length if length > 0 else _PARAMETERS
+        return float(np.interp(share, shares, _PARAMETERS))
 
     def wrist(self, k: float) -> Vector:
         """The wrist (3,) at the parameter `k` in [0, 1], in the torso's frame, m."""

@@ -52,7 +52,23 @@ def effort_factors(text: str) -> dict[str, float] | None:
 
 
 @dataclass(frozen=True, slots=True)
-class Repeat:
+class _Counts:
+    first: int
+    last: int
+
+    @property
+    def start(self) -> Fraction:
+        """The beat after which the counts begin; a frame on this very beat is not one of them."""
+        return Fraction(self.first - 1)
+
+    @property
+    def end(self) -> Fraction:
+        """The beat that the counts end with, itself one of them."""
+        return Fraction(self.last)
+
+
+@dataclass(frozen=True, slots=True)
+class Repeat(_Counts):
     """Counts that are danced again.
 
     Attributes:
@@ -66,26 +82,14 @@ class Repeat:
         at: Where it was written; takes no part in equality.
     """
 
-    first: int
-    last: int
     times: int = 1
     other_side: bool = False
     endings: tuple[tuple[int, int], ...] = ()
     at: Location | None = field(default=None, compare=False)
 
-    @property
-    def start(self) -> Fraction:
-        """The beat after which it begins; a frame on this very beat is not repeated."""
-        return Fraction(self.first - 1)
-
-    @property
-    def end(self) -> Fraction:
-        """The beat that it ends with, itself repeated."""
-        return Fraction(self.last)
-
 
 @dataclass(frozen=True, slots=True)
-class Phrase:
+class Phrase(_Counts):
     """Counts danced in one breath.
 
     Attributes:
@@ -99,22 +103,10 @@ class Phrase:
         at: Where it was written; takes no part in equality.
     """
 
-    first: int
-    last: int
     effort: str | None = None
     tempo_end: float | None = None
     name: str | None = None
     at: Location | None = field(default=None, compare=False)
-
-    @property
-    def start(self) -> Fraction:
-        """The beat after which it begins."""
-        return Fraction(self.first - 1)
-
-    @property
-    def end(self) -> Fraction:
-        """The beat that it ends with."""
-        return Fraction(self.last)
 
     def extra_pulses(self, beat: Fraction | float) -> float:
         """How much longer the phrase has taken at a beat than at an even tempo, in pulses.

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import replace
-from math import ceil
 from typing import TYPE_CHECKING, TypeVar
 
 from enpointe.errors import ScoreError
@@ -21,7 +20,7 @@ from enpointe.notation.signs import (
     Sign,
     Support,
 )
-from enpointe.notation.stage import StagePlace
+from enpointe.notation.stage import StagePlace, shorter_way
 from enpointe.notation.vocabulary import (
     arm_signs,
     find_arms,
@@ -216,7 +215,7 @@ class _State:
         if frame.turn is not None:
             self._facing += frame.turn.signed
         elif frame.facing is not None:
-            self._facing += _shorter_way(frame.facing.degrees - self._facing)
+            self._facing += shorter_way(frame.facing.degrees - self._facing)
         if frame.place is not None:
             self._place = frame.place
         elif frame.travel is not None:
@@ -229,8 +228,3 @@ class _State:
 
     def _fail(self, message: str, at: Location) -> ScoreError:
         return ScoreError(message, at.line, at.column, self._source)
-
-
-def _shorter_way(degrees: float) -> float:
-    """The same change of facing by the shorter way, half a turn by the left."""
-    return degrees - 360.0 * (ceil((degrees + 180.0) / 360.0) - 1.0)

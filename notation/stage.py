@@ -10,11 +10,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import cos, radians, sin
+from math import ceil, cos, radians, sin
 
 from enpointe.notation.signs import Location, Side
 
-__all__ = ["DIRECTION_WORDS", "Facing", "StagePlace", "Travel", "Turn"]
+__all__ = ["DIRECTION_WORDS", "Facing", "StagePlace", "Travel", "Turn", "shorter_way"]
 
 DIRECTION_WORDS: Mapping[float, tuple[str, ...]] = {
     0.0: ("audience", "wall 5", "en face", "downstage", "point 1"),
@@ -30,6 +30,11 @@ DIRECTION_WORDS: Mapping[float, tuple[str, ...]] = {
 
 Corners and walls are Cecchetti's, from the dancer's right front on counter-clockwise, the audience
 wall 5; points are the French and Russian schools', clockwise from the audience."""
+
+
+def shorter_way(degrees: float) -> float:
+    """The same direction, or change of direction, above -180 and up to 180 degrees."""
+    return degrees - 360.0 * (ceil((degrees + 180.0) / 360.0) - 1.0)
 
 
 @dataclass(frozen=True, slots=True)

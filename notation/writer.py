@@ -25,7 +25,7 @@ from enpointe.notation.stage import DIRECTION_WORDS, StagePlace, Travel
 from enpointe.notation.tempo import tempo_of
 from enpointe.notation.vocabulary_arms import BODY_PLACES
 
-__all__ = ["format_beat", "format_score", "frame_lines"]
+__all__ = ["arms_name", "feet_name", "format_beat", "format_score", "frame_lines"]
 
 
 def format_score(score: Score) -> str:
@@ -75,7 +75,7 @@ def _leg_lines(frame: Frame) -> Iterator[str]:
         both = left if left is not None and left == right else None
         if both is not None:
             support = {}
-        yield ", ".join([f"feet: {_feet(frame.feet)}", *(_stance(both) if both else ())])
+        yield ", ".join([f"feet: {feet_name(frame.feet)}", *(_stance(both) if both else ())])
     for side in Side:
         items: list[str] = []
         sign, stance = frame.foot_signs.get(side), support.get(side)
@@ -105,7 +105,7 @@ def _arm_lines(frame: Frame) -> Iterator[str]:
     together = frame.arms is not None and left is not None and left == right
     if frame.arms is not None:
         path = _path(frame, Limb.LEFT_HAND) if together else []
-        yield ", ".join([f"arms: {_arms(frame.arms)}", *path])
+        yield ", ".join([f"arms: {arms_name(frame.arms)}", *path])
     for side in Side:
         items = [_sign(frame.hands[side])] if side in frame.hands else []
         if side in frame.contacts:
@@ -144,12 +144,14 @@ def _sign(sign: Sign) -> str:
     return f"{text}, straight" if sign.straight else text
 
 
-def _feet(position: FeetPosition) -> str:
+def feet_name(position: FeetPosition) -> str:
+    """A position of the feet as a score writes it."""
     name = f"{position.name} open" if position.open else position.name
     return name if position.front is None else f"{name} {position.front} front"
 
 
-def _arms(position: ArmsPosition) -> str:
+def arms_name(position: ArmsPosition) -> str:
+    """A position of the arms as a score writes it."""
     return (
         position.name if position.leading is None else f"{position.name} {position.leading} leads"
     )

@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from enpointe.performing import Performance
+from enpointe.performing import Performance, Progress
 from enpointe.report.ground import support_at
 from enpointe.report.pictures import ASPECT, fitted_view
 from enpointe.sim.camera import Overlays, View
@@ -26,7 +26,6 @@ from enpointe.sim.video import (
 
 __all__ = ["FilmFile", "film_of"]
 
-Progress = Callable[[str, float, float], None]
 HEIGHT_ONE, HEIGHT_SEVERAL = 600, 400
 FPS, FPS_SLOW = 20.0, 10.0
 """Frames a second; slow for a GIF, which is large, and for the sketch painter, which is slow."""

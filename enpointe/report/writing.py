@@ -10,7 +10,7 @@ from enpointe.files import atomic_path, write_bytes
 from enpointe.models import KeyPose
 from enpointe.notation import Score
 from enpointe.notation.stave import stave_svg
-from enpointe.performing import Performance, Progress
+from enpointe.performing import Performance, Progress, silent
 from enpointe.posing import Poses
 from enpointe.report import words
 from enpointe.report.blocks import Page
@@ -40,7 +40,7 @@ def write_report(
     out: Path,
     *,
     video: bool = True,
-    progress: Progress | None = None,
+    progress: Progress = silent,
 ) -> ReportFiles:
     """Write a report of a dance into a folder.
 
@@ -73,7 +73,7 @@ def write_report(
         # to be known now, not after the film.
         with atomic_path(out / "report.html") as beside:
             beside.touch()
-            parts, page, warning = _draw(dance, video, progress or _silent)
+            parts, page, warning = _draw(dance, video, progress)
             html = render(page)
             files = {name: write_bytes(out / file, data) for name, (file, data) in parts.items()}
             beside.write_text(html, encoding="utf-8")
@@ -83,10 +83,6 @@ def write_report(
                 folder.rmdir()
         raise
     return ReportFiles({"report": out / "report.html", **files}, warning)
-
-
-def _silent(task: str, done: float, total: float) -> None:
-    """No progress shown."""
 
 
 def _draw(

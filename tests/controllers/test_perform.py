@@ -67,8 +67,8 @@ def reference(seconds: float = 1.0) -> Motion:
     return Motion.from_qpos(tiny_model(), time, qpos, events=events, name="ramp")
 
 
-def recorded(**body: object) -> Recording:
-    return perform(reference(), Ramp(), Echo(**body))  # type: ignore[arg-type]
+def recorded(fault_at: int | None = None) -> Recording:
+    return perform(reference(), Ramp(), Echo(fault_at=fault_at))
 
 
 def test_bodies_and_controllers_are_known_by_what_they_do() -> None:

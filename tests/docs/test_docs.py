@@ -115,7 +115,8 @@ def options(verb: str) -> dict[str, Any]:
 
     from enpointe.cli import app
 
-    command = typer.main.get_command(app).commands[verb]  # type: ignore[attr-defined]
+    verbs = vars(typer.main.get_command(app))["commands"]
+    command = verbs[verb]
     return {o: p for p in command.params for o in (*p.opts, *p.secondary_opts)}
 
 
@@ -279,14 +280,14 @@ def test_fields_of_a_physical_performance_and_a_comparison(phrase: Score) -> Non
     physical = comparison.performances["physical"].summary()
     assert set(physical) == fields("kinematic") | fields("physical")
     assert set(figures) == {"variants", "differences"}
-    for difference in figures["differences"]:  # type: ignore[attr-defined]
+    for difference in figures["differences"]:
         assert set(difference) == fields("difference")
 
 
 def test_fields_of_poses(phrase: Score) -> None:
     text = (ROOT / "docs" / "figures.md").read_text(encoding="utf-8")
     (row,) = re.findall(r"^\| `rules` \|.*$", text, flags=re.MULTILINE)
-    for pose in enpointe.pose(phrase).summary()["poses"]:  # type: ignore[attr-defined]
+    for pose in enpointe.pose(phrase).summary()["poses"]:
         assert set(pose) == fields("pose")
         for rule in pose["rules"]:
             assert set(rule) == set(re.findall(r"`(\w+)`", row)) - {"rules", "mm", "deg"}
@@ -310,6 +311,9 @@ def test_pictures_are_small_and_used() -> None:
 def test_the_readmes_figures_are_those_of_the_dance() -> None:
     """Rounded as the README rounds them."""
     figures = enpointe.perform("third-port-de-bras", effort="happy").summary()
+    margin, fit = figures["support_margin_min"], figures["logistic"]
+    assert margin is not None
+    assert fit is not None
     said = dict(
         re.findall(
             r"^\| ([^|]*?) \| ([^|]*?) \|",
@@ -317,15 +321,12 @@ def test_the_readmes_figures_are_those_of_the_dance() -> None:
             flags=re.MULTILINE,
         )
     )
-    fit: Any = figures["logistic"]
     assert {
         "joints behind the score, rms": f"{figures['tracking_rms_deg']:.2f}°",
-        "centre of mass inside the support, at least": (
-            f"{1000 * figures['support_margin_min']:.0f} mm"  # type: ignore[operator]
-        ),
-        "feet slip, at most": f"{1000 * figures['slip_max']:.1f} mm",  # type: ignore[operator]
+        "centre of mass inside the support, at least": f"{1000 * margin:.0f} mm",
+        "feet slip, at most": f"{1000 * figures['slip_max']:.1f} mm",
         "force on the root from anything but gravity and floor": f"{figures['root_force_max']:g} N",
-        "strength used, at most": f"{100 * figures['torque_limit_fraction_max']:.0f} %",  # type: ignore[operator]
+        "strength used, at most": f"{100 * figures['torque_limit_fraction_max']:.0f} %",
         "timing asked, and danced under gravity": (
             f"$b$ −2.42, −{-fit['b']:.2f}; $x_0$ 0.60, {fit['x0']:.2f}"
         ),

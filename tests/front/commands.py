@@ -4,27 +4,21 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from typing import Any
 
 import pytest
 
 from enpointe.cli import _run
 
 from ..motion.dancing import written_score
+from ..notation.texts import frame
 
 SHORT = written_score(
     "feet: fifth right front; arms: fifth en bas",
     "arms: à la seconde; head: turn right 20",
     tempo=90,
 )
-HEAD = "benesh 1\ntitle: T\nmethod: Cecchetti\nmetre: 4/4\ntempo: 60\n"
-START = HEAD + "beat 0:\n  feet: first\n  arms: first\n"
-
-
-def second(line: str) -> str:
-    return f"{START}beat 1:\n  {line}\n"
-
-
-ALOFT = second("left leg: pointed devant\n  right leg: pointed derrière")
+ALOFT = frame("  left leg: pointed devant\n  right leg: pointed derrière")
 """A frame with nobody on the floor, and no jump that leads there."""
 
 
@@ -40,7 +34,8 @@ def refused(capfd: pytest.CaptureFixture[str], *arguments: str) -> str:
     return err
 
 
-def one_object(text: str) -> Mapping[str, object]:
+def one_object(text: str) -> Mapping[str, Any]:
+    """The one line of JSON that a command printed."""
     assert text.count("\n") == 1
     value = json.loads(text, parse_constant=lambda c: pytest.fail(f"{c} is no JSON"))
     assert isinstance(value, dict)

@@ -82,7 +82,7 @@ def test_compare_prints_every_variant(
     assert isinstance(variants, dict)
     assert list(variants) == ["slerp", "logistic", "expressive", "physical"]
     assert set(PHYSICAL) <= set(variants["physical"])
-    assert {"wrist_path_rms", "joint_rms_deg"} <= set(figures["differences"][0])  # type: ignore[index]
+    assert {"wrist_path_rms", "joint_rms_deg"} <= set(figures["differences"][0])
     assert Path("short-compared/report.html").is_file()
 
 
@@ -91,7 +91,7 @@ def test_pose_prints_rules(
 ) -> None:
     assert _run(["pose", "arms fifth en haut", "--json"]) == 0
     figures = one_object(capfd.readouterr().out)
-    (pose,) = figures["poses"]  # type: ignore[misc]
+    (pose,) = figures["poses"]
     assert {"name", "qpos", "rules", "solve_ms"} <= set(pose)
     assert Path("arms-fifth-en-haut/report.html").is_file()
 
@@ -118,7 +118,7 @@ def test_the_vocabulary_can_be_listed(home: Path, capfd: pytest.CaptureFixture[s
     listed = one_object(capfd.readouterr().out)["names"]
     assert _run(["pose", "--list"]) == 0
     assert capfd.readouterr().out.split("\n")[:-1] == listed
-    assert "third-port-de-bras" in listed  # type: ignore[operator]
+    assert "third-port-de-bras" in listed
     assert list(home.iterdir()) == []
 
 
@@ -219,3 +219,11 @@ def test_the_program_refuses_as_the_function_does(tmp_path: Path) -> None:
     assert run.stderr.startswith("enpointe: bad.bmn:12:9: ")
     assert run.stderr.count("\n") == 1
     assert [p.name for p in tmp_path.iterdir()] == ["bad.bmn"]
+
+
+def test_it_runs_as_a_module_too() -> None:
+    """Where the command's folder is not on the path, `python -m enpointe` does the same."""
+    said = subprocess.run(
+        [sys.executable, "-m", "enpointe", "--help"], capture_output=True, text=True, check=True
+    )
+    assert "perform" in said.stdout

@@ -77,7 +77,7 @@ def test_a_pose_without_a_name_is_an_answer_of_no(
 
 def test_a_solved_pose_says_what_it_is_recognised_as() -> None:
     poses = enpointe.pose("arms fourth en haut")
-    (figures,) = poses.summary()["poses"]  # type: ignore[misc]
+    (figures,) = poses.summary()["poses"]
     assert figures["recognised_as"] == "feet first, arms fourth en haut right leads"
     assert enpointe.recognise(poses.key_poses[0].qpos).named
 

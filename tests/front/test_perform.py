@@ -8,6 +8,7 @@ import sys
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from enpointe import EnpointeError, Performance
 from enpointe.controllers import FeedForward, Gains, Recording
 from enpointe.errors import ModelError, MotionError, ScoreError
 from enpointe.models import Anthropometry, Style
+from enpointe.models.leg_target import Standing
 from enpointe.motion.npz import load_motion
 from enpointe.notation import Score, Side, load_score, names, parse_score, shipped_scores
 
@@ -50,7 +52,9 @@ def test_a_dance_has_the_promised_figures() -> None:
     assert summary["fell_at"] is None
     assert summary["root_force_max"] == 0.0
     assert summary["flights"] == []
-    assert summary["steps"] == len(dance().recording.time)  # type: ignore[union-attr]
+    recording = dance().recording
+    assert recording is not None
+    assert summary["steps"] == len(recording.time)
     assert summary["duration"] == pytest.approx(0.5 + 60 / 80 + 1.0, abs=0.01)
     assert json.loads(json.dumps(summary))["steps"] == summary["steps"]
 
@@ -71,8 +75,10 @@ def test_the_reference_does_not_depend_on_the_controller() -> None:
 
 
 def test_a_preset_brings_its_tempo_and_numbers_leave_the_scores_own() -> None:
-    def seconds(**asked: object) -> float:
-        moved = enpointe.perform(parse_score(SHORT), controller="kinematic", **asked)  # type: ignore[arg-type]
+    def seconds(effort: str, tempo: float | None = None) -> float:
+        moved = enpointe.perform(
+            parse_score(SHORT), controller="kinematic", effort=effort, tempo=tempo
+        )
         return float(np.diff(moved.choreography.key_times)[0])
 
     assert seconds(effort="sad") == pytest.approx(60 / 37)
@@ -177,7 +183,8 @@ def test_a_fall_is_an_answer_and_no_error(monkeypatch: pytest.MonkeyPatch) -> No
     summary = fallen.summary()
     assert not fallen.completed
     assert summary["completed"] is False
-    assert 0 < summary["fell_at"] < fallen.motion.duration  # type: ignore[operator]
+    assert summary["fell_at"] is not None
+    assert 0 < summary["fell_at"] < fallen.motion.duration
     assert summary["fault"] == "fell"
     assert json.dumps(summary)
 
@@ -211,10 +218,10 @@ def make_limp(monkeypatch: pytest.MonkeyPatch) -> None:
     ],
 )
 def test_what_cannot_be_danced_is_one_line(
-    arguments: dict[str, object], error: type[EnpointeError], message: str
+    arguments: dict[str, Any], error: type[EnpointeError], message: str
 ) -> None:
     with pytest.raises(error) as refused:
-        enpointe.perform(parse_score(SHORT), **arguments)  # type: ignore[arg-type]
+        enpointe.perform(parse_score(SHORT), **arguments)
     assert message in str(refused.value)
     assert "\n" not in str(refused.value)
 
@@ -283,7 +290,7 @@ def test_every_variant_dances_at_the_same_times() -> None:
 )
 def test_positions_of_the_vocabulary_can_be_posed(name: str) -> None:
     poses = enpointe.pose(name)
-    (summary,) = poses.summary()["poses"]  # type: ignore[misc]
+    (summary,) = poses.summary()["poses"]
     assert poses.held
     assert summary["name"] == name.lower()
     assert len(summary["qpos"]) == 43
@@ -314,9 +321,9 @@ def test_a_misspelt_position_is_corrected() -> None:
 def test_turnout_is_the_dancers_own() -> None:
     def turned(degrees: float) -> float:
         pose = enpointe.pose("feet first", style=Style(turnout_deg=degrees)).key_poses[0]
-        print_ = pose.target.legs[Side.LEFT].footprint
-        assert print_ is not None
-        return float(np.degrees(print_.direction))
+        leg = pose.target.legs[Side.LEFT]
+        assert isinstance(leg, Standing)
+        return float(np.degrees(leg.footprint.direction))
 
     assert turned(70.0) - turned(50.0) == pytest.approx(20.0)
 
@@ -347,4 +354,4 @@ def test_two_frames_at_the_same_pose_are_a_dance() -> None:
     summary = enpointe.perform(score, controller="kinematic").summary()
     assert json.dumps(summary)
     moved = replace(dance("kinematic"), effort_name="x")
-    assert moved.summary()["effort"]["name"] == "x"  # type: ignore[index]
+    assert moved.summary()["effort"]["name"] == "x"

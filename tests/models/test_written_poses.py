@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from enpointe.errors import ScoreError
-from enpointe.models import Figure, KeyPoseSolver, Style, dancer_model, pose_target
+from enpointe.models import Figure, KeyPose, KeyPoseSolver, Style, dancer_model, pose_target
 from enpointe.models.leg_target import InAir, Standing
 from enpointe.models.target import turn_tilt_bend
 from enpointe.notation import ArmsPosition, Depth, FeetPosition, Orientation, Side, mirrored
@@ -102,7 +102,14 @@ def test_the_pelvis_is_turned_as_written(solver: KeyPoseSolver) -> None:
     assert np.degrees((bent.inv() * pelvis).magnitude()) < 5
 
 
-STANDING_LEG = "left foot: 0.09 wide, 1 high, level"
+def raised_leg(solver: KeyPoseSolver, width: float, height: float, depth: Depth) -> KeyPose:
+    """On the left leg, the right foot where its sign has it."""
+    frame = written(
+        "left foot: 0.09 wide, 1 high, level",
+        f"right foot: {width} wide, {height} high, {depth}",
+        "arms: à la seconde",
+    )
+    return solver.solve(pose_target(frame, solver.figure))
 
 
 @pytest.mark.parametrize("height", [2.0, 2.5, 3.0])
@@ -112,12 +119,7 @@ STANDING_LEG = "left foot: 0.09 wide, 1 high, level"
 def test_a_raised_leg_is_where_its_sign_is_or_is_said_not_to_be(
     width: float, depth: Depth, height: float, solver: KeyPoseSolver, model: mujoco.MjModel
 ) -> None:
-    lines = (
-        STANDING_LEG,
-        f"right foot: {width} wide, {height} high, {depth}",
-        "arms: à la seconde",
-    )
-    found = solver.solve(pose_target(written(*lines), solver.figure))
+    found = raised_leg(solver, width, height, depth)
     data = at(model, found.qpos)
     leg = found.target.legs[Side.RIGHT]
     assert isinstance(leg, InAir)
@@ -163,12 +165,7 @@ def test_a_raised_leg_stays_turned_out(
     width: float, depth: Depth, height: float, solver: KeyPoseSolver, model: mujoco.MjModel
 ) -> None:
     """A leg raised to any height keeps 45 degrees of turnout: its knee faces up à la seconde."""
-    lines = (
-        STANDING_LEG,
-        f"right foot: {width} wide, {height} high, {depth}",
-        "arms: à la seconde",
-    )
-    found = solver.solve(pose_target(written(*lines), solver.figure))
+    found = raised_leg(solver, width, height, depth)
     assert found.held, str(found.certificate)
     assert hip_turnout(at(model, found.qpos), Side.RIGHT) > 45
 

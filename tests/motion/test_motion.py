@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -111,9 +112,9 @@ def test_key_events_are_the_key_poses() -> None:
         ({"time": np.r_[0, np.full(400, np.nan)]}, "times must start at 0, increase"),
     ],
 )
-def test_what_is_no_motion_is_refused(changes: dict[str, Array], message: str) -> None:
+def test_what_is_no_motion_is_refused(changes: dict[str, Any], message: str) -> None:
     with pytest.raises(MotionError, match=message):
-        replace(swinging(), **changes)  # type: ignore[arg-type]
+        replace(swinging(), **changes)
 
 
 def test_one_frame_is_no_motion() -> None:

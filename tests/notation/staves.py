@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
+from typing import Any
 from xml.etree import ElementTree
 
 from enpointe.notation import ArmsPosition, FeetPosition, Frame, Score, Side
@@ -26,9 +27,9 @@ def score_of(*frames: Frame) -> Score:
     )
 
 
-def written_at(beat: int, **parts: object) -> Frame:
+def written_at(beat: int, **parts: Any) -> Frame:
     """A frame that writes these parts."""
-    return replace(Frame(Fraction(beat)), **parts)  # type: ignore[arg-type]
+    return replace(Frame(Fraction(beat)), **parts)
 
 
 def frame_groups(svg: str) -> list[ElementTree.Element]:

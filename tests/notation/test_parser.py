@@ -42,13 +42,7 @@ from enpointe.notation import (
     parse_score,
 )
 
-HEAD = "benesh 1\ntitle: T\nmethod: Cecchetti\nmetre: 4/4\ntempo: 60\n"
-START = HEAD + "beat 0:\n  feet: first\n  arms: first\n"
-
-
-def frame(lines: str) -> str:
-    """A good score, then beat 1 on line 9 and these lines from line 10."""
-    return f"{START}beat 1:\n{lines}\n"
+from .texts import START, frame, headed
 
 
 def test_reads_every_kind_of_line() -> None:
@@ -207,7 +201,7 @@ def test_reads_what_stands_above_the_stave() -> None:
 
 def test_bars_are_another_way_to_count() -> None:
     """A beat of a bar is a beat of the score, after the pickup."""
-    text = START.replace("beat 0", "pickup: 1\nbeat 0") + "bar 1 beat 1:\nbar 2 beat 4+1/2:\n"
+    text = headed("pickup: 1") + "bar 1 beat 1:\nbar 2 beat 4+1/2:\n"
     assert [frame.beat for frame in parse_score(text).frames] == [0, 2, Fraction(19, 2)]
 
 

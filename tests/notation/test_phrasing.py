@@ -12,15 +12,13 @@ from hypothesis import strategies as st
 from enpointe.notation import Phrase, Repeat, Score, Side, load_score, parse_score
 
 from .strategies import scores
-
-HEAD = "benesh 1\ntitle: T\nmethod: M\nmetre: 4/4\ntempo: 60\n"
-START = "beat 0:\nfeet: fifth right front\narms: fifth en bas\n"
+from .texts import FIFTH, HEAD
 
 
 def danced(heading: str, beats: int) -> list[tuple[float, float]]:
     """Beats and heads of the dance; at beat n the head is turned n degrees to the left."""
     frames = "".join(f"beat {n}:\nhead: turn left {n}\n" for n in range(1, beats + 1))
-    score = parse_score(HEAD + heading + START + frames)
+    score = parse_score(HEAD + heading + FIFTH + frames)
     return [
         (float(frame.beat), frame.head.turn)
         for frame in score.performed().frames
@@ -43,7 +41,7 @@ def test_the_other_side_alternates() -> None:
 def test_upbeats_belong_to_the_count_that_they_lead_to() -> None:
     """Beat 1/2 is repeated with count 1, beat 2+1/2 is not repeated with count 2."""
     frames = "beat 1/2:\nbeat 1:\nbeat 2:\nbeat 2+1/2:\nbeat 3:\n"
-    score = parse_score(HEAD + "repeat 1 to 2: once\n" + START + frames).performed()
+    score = parse_score(HEAD + "repeat 1 to 2: once\n" + FIFTH + frames).performed()
     assert [float(frame.beat) for frame in score.frames] == [0, 0.5, 1, 2, 2.5, 3, 4, 4.5, 5]
 
 
@@ -57,7 +55,7 @@ def test_the_second_ending_takes_the_place_of_the_first() -> None:
 
 def test_jumps_and_phrases_go_along() -> None:
     """A repeated jump has its own moments, a repeated phrase its own counts."""
-    text = HEAD + "repeat 1 to 2: once more\nphrase 1 to 2: sad\n" + START
+    text = HEAD + "repeat 1 to 2: once more\nphrase 1 to 2: sad\n" + FIFTH
     score = parse_score(text + "beat 1:\nbeat 2:\njump: off 1+1/2, on 2\n").performed()
     jumps = [(float(frame.jump.off), float(frame.jump.on)) for frame in score.frames if frame.jump]
     assert jumps == [(1.5, 2.0), (3.5, 4.0)]

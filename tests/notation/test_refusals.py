@@ -7,14 +7,7 @@ import pytest
 from enpointe.errors import ScoreError
 from enpointe.notation import MAX_BYTES, parse_score
 
-HEAD = "benesh 1\ntitle: T\nmethod: Cecchetti\nmetre: 4/4\ntempo: 60\n"
-START = HEAD + "beat 0:\n  feet: first\n  arms: first\n"
-
-
-def frame(lines: str) -> str:
-    """A good score, then beat 1 on line 9 and these lines from line 10."""
-    return f"{START}beat 1:\n{lines}\n"
-
+from .texts import HEAD, START, frame, headed
 
 WRONG: dict[str, tuple[str | bytes, int, int, str]] = {
     "no header": ("title: T\n", 1, 1, "benesh 1"),
@@ -112,12 +105,7 @@ WRONG: dict[str, tuple[str | bytes, int, int, str]] = {
         3,
         "straight and bent",
     ),
-    "straight foot": (
-        frame("  left foot: 1 wide, 3 high, level, straight"),
-        10,
-        37,
-        "only a hand",
-    ),
+    "straight foot": (frame("  left foot: 1 wide, 3 high, level, straight"), 10, 37, "only a hand"),
     "turned twice": (frame("  head: turn left, turn right"), 10, 20, "turn of the head"),
     "erect and tilted": (frame("  head: erect, tilt left"), 10, 14, "end of the line"),
     "turned forward": (frame("  head: turn forward"), 10, 14, "'left' or 'right'"),
@@ -195,46 +183,26 @@ WRONG: dict[str, tuple[str | bytes, int, int, str]] = {
     "bar 0": (START + "bar 0 beat 1:\n", 9, 5, "whole number"),
     "pickup of a bar": (HEAD + "pickup: 4\nbeat 0:\n", 6, 9, "not a pickup"),
     "unknown tempo": (START.replace("60", "Schnell"), 5, 8, "Adagio"),
-    "repeat too long": (START.replace("beat 0", "repeat 1 to 2: once\nbeat 0"), 6, 1, "ends at"),
-    "one ending": (
-        START.replace("beat 0", "repeat 1 to 2: once, first ending 2 to 2\nbeat 0"),
-        6,
-        1,
-        "second ending",
-    ),
-    "repeat of nothing": (
-        START.replace("beat 0", "repeat 1 to 2:\nbeat 0"),
-        6,
-        15,
-        "'once'",
-    ),
-    "slowing up": (
-        START.replace("beat 0", "phrase 1 to 2: slowing to 1.2\nbeat 0"),
-        6,
-        27,
-        "below 1",
-    ),
-    "unknown quality": (START.replace("beat 0", "phrase 1 to 2: glad\nbeat 0"), 6, 16, "quality"),
-    "two qualities": (
-        START.replace("beat 0", "phrase 1 to 2: sad, time=-3\nbeat 0"),
-        6,
-        21,
-        "keep one",
-    ),
+    "repeat too long": (headed("repeat 1 to 2: once"), 6, 1, "ends at"),
+    "one ending": (headed("repeat 1 to 2: once, first ending 2 to 2"), 6, 1, "second ending"),
+    "repeat of nothing": (headed("repeat 1 to 2:"), 6, 15, "'once'"),
+    "slowing up": (headed("phrase 1 to 2: slowing to 1.2"), 6, 27, "below 1"),
+    "unknown quality": (headed("phrase 1 to 2: glad"), 6, 16, "quality"),
+    "two qualities": (headed("phrase 1 to 2: sad, time=-3"), 6, 21, "keep one"),
     "phrases that overlap": (
-        START.replace("beat 0", "phrase 1 to 2: sad\nphrase 2 to 3: sad\nbeat 0"),
+        headed("phrase 1 to 2: sad\nphrase 2 to 3: sad"),
         7,
         1,
         "none over another",
     ),
     "phrase across a repeat": (
-        START.replace("beat 0", "repeat 1 to 2: once\nphrase 2 to 3: sad\nbeat 0") + "beat 4:\n",
+        headed("repeat 1 to 2: once\nphrase 2 to 3: sad") + "beat 4:\n",
         7,
         1,
         "within this phrase",
     ),
     "jump into a repeat": (
-        START.replace("beat 0", "repeat 2 to 2: once\nbeat 0") + "beat 2:\n  jump: off 1/2, on 2\n",
+        headed("repeat 2 to 2: once") + "beat 2:\n  jump: off 1/2, on 2\n",
         11,
         3,
         "during this jump",

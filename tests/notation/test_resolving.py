@@ -21,9 +21,7 @@ from enpointe.notation import (
 )
 
 from .strategies import scores
-
-HEAD = "benesh 1\ntitle: T\nmethod: M\nmetre: 4/4\ntempo: 60\n"
-START = HEAD + "beat 0:\nfeet: fifth right front\narms: fifth en bas\n"
+from .texts import IN_FIFTH
 
 
 def resolved(*beats: str) -> tuple[ResolvedFrame, ...]:
@@ -31,7 +29,7 @@ def resolved(*beats: str) -> tuple[ResolvedFrame, ...]:
     text = "".join(
         f"beat {i}:\n" + lines.replace("; ", "\n") + "\n" for i, lines in enumerate(beats, 1)
     )
-    return parse_score(START + text).resolved()
+    return parse_score(IN_FIFTH + text).resolved()
 
 
 def test_a_working_leg_leaves_the_other_where_it_stands() -> None:

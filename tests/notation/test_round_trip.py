@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 import random
+from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -153,7 +154,7 @@ def test_a_hundred_thousand_mutants_are_read_or_refused(score: Score, seed: int)
 def test_mutated_json_is_read_or_refused(score: Score, data: st.DataObject) -> None:
     """Whatever stands in place of a value, it is a score or a ScoreError with the value's path."""
     whole = score_to_json(score)
-    node: object = whole
+    node: Any = whole
     for _ in range(data.draw(st.integers(1, 5))):
         if isinstance(node, dict) and node:
             key: str | int = data.draw(st.sampled_from(sorted(node)))
@@ -161,11 +162,11 @@ def test_mutated_json_is_read_or_refused(score: Score, data: st.DataObject) -> N
             key = data.draw(st.integers(0, len(node) - 1))
         else:
             break
-        inside = node[key]  # type: ignore[index]
+        inside = node[key]
         if data.draw(st.booleans()) or not isinstance(inside, dict | list):
             scrap = st.none() | st.booleans() | st.floats() | st.text(max_size=5) | st.integers()
             value = data.draw(scrap | st.just({"a": 1}) | st.lists(st.integers(), max_size=3))
-            node[key] = value  # type: ignore[index]
+            node[key] = value
             break
         node = inside
     error = None

@@ -24,17 +24,14 @@ from enpointe.notation import (
 )
 
 from .strategies import scores
+from .texts import IN_FIFTH
 
-START = (
-    "benesh 1\ntitle: T\nmethod: M\nmetre: 4/4\ntempo: 60\n"
-    "beat 0:\nfeet: fifth right front\narms: fifth en bas\n"
-)
 HIGH = "left hand: 0.2 wide, 5.5 high, front\n"
 
 
 def test_unwritten_holds() -> None:
     """An empty frame is the frame before it."""
-    first, second = parse_score(START + "head: turn left 20\nbeat 1:\n").resolved()
+    first, second = parse_score(IN_FIFTH + "head: turn left 20\nbeat 1:\n").resolved()
     assert replace(second, beat=first.beat) == first
     assert second.head == Orientation(turn=20)
     assert second.body == second.pelvis == Orientation()
@@ -42,7 +39,7 @@ def test_unwritten_holds() -> None:
 
 def test_a_hand_leaves_the_named_position_alone() -> None:
     """A hand sign overrides its own side only; a name overrides both again."""
-    _, raw, named = parse_score(START + f"beat 1:\n{HIGH}beat 2:\narms: à la seconde").resolved()
+    _, raw, named = parse_score(IN_FIFTH + f"beat 1:\n{HIGH}beat 2:\narms: à la seconde").resolved()
     assert raw.arms[Side.LEFT].named is None
     assert raw.arms[Side.LEFT].wrist.height == 5.5
     assert raw.arms[Side.LEFT].rounded
@@ -52,7 +49,9 @@ def test_a_hand_leaves_the_named_position_alone() -> None:
 
 def test_an_elbow_lasts_until_its_hand_moves() -> None:
     """A written elbow ends the rounding (Neagle 2005 §4.4.3) until the arm is written anew."""
-    text = START + f"beat 1:\n{HIGH}left elbow: .5 wide, 4.5 high, level\nbeat 2:\nbeat 3:\n{HIGH}"
+    text = (
+        IN_FIFTH + f"beat 1:\n{HIGH}left elbow: .5 wide, 4.5 high, level\nbeat 2:\nbeat 3:\n{HIGH}"
+    )
     _, bent, held, moved = parse_score(text).resolved()
     for frame in (bent, held):
         assert frame.arms[Side.LEFT].elbow is not None
@@ -63,7 +62,7 @@ def test_an_elbow_lasts_until_its_hand_moves() -> None:
 
 def test_arabesque_arms_are_not_rounded() -> None:
     """Neagle 2005 §4.2.2; written straight by hand means the same."""
-    text = START + "beat 1:\narms: first arabesque left\nbeat 2:\n"
+    text = IN_FIFTH + "beat 1:\narms: first arabesque left\nbeat 2:\n"
     text += "left hand: 1 wide, 4 high, level, straight"
     _, named, raw = parse_score(text).resolved()
     assert not any(arm.rounded for arm in named.arms.values())
@@ -72,7 +71,7 @@ def test_arabesque_arms_are_not_rounded() -> None:
 
 def test_feet_leave_the_position_one_by_one() -> None:
     """One raised foot leaves the other in its place; a name gathers both, knees straight."""
-    text = START + (
+    text = IN_FIFTH + (
         "beat 1:\nright foot: 1 wide, 3 high, level\nleft knee: .2 wide, 2 high, level\n"
         "beat 2:\nleft foot: 0 wide, 1 high, front\nbeat 3:\nfeet: first"
     )
@@ -89,13 +88,13 @@ def test_feet_leave_the_position_one_by_one() -> None:
 
 def test_a_plie_is_a_position_with_knees() -> None:
     """Knees may be written with a named position of the feet."""
-    text = START + "beat 1:\nfeet: first\nleft knee: .3 wide, 2 high, level\n"
+    text = IN_FIFTH + "beat 1:\nfeet: first\nleft knee: .3 wide, 2 high, level\n"
     assert set(parse_score(text).resolved()[1].knees) == {Side.LEFT}
 
 
 def test_everything_resolved_knows_the_line_that_set_it() -> None:
     """Also what was held: errors about a pose point to where it was written."""
-    last = parse_score(START + "beat 1:\nhead: turn left\nbeat 2:\n").resolved()[2]
+    last = parse_score(IN_FIFTH + "beat 1:\nhead: turn left\nbeat 2:\n").resolved()[2]
     assert last.at == Location(11, 1)
     assert last.head.at == Location(10, 1)
     assert last.feet is not None
@@ -158,6 +157,6 @@ def test_a_tempo_nobody_can_dance(tempo: float) -> None:
 
 def test_scores_are_values() -> None:
     """Equal scores hash alike; places in the text take no part."""
-    one, two = parse_score(START, "a"), parse_score("\n\n" + START, "b")
+    one, two = parse_score(IN_FIFTH, "a"), parse_score("\n\n" + IN_FIFTH, "b")
     assert one == two
     assert hash(one) == hash(two)

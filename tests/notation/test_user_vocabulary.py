@@ -20,8 +20,8 @@ from enpointe.notation import (
     parse_score,
 )
 
-HEAD = "benesh 1\ntitle: T\nmethod: M\nmetre: 4/4\ntempo: 60\n"
-START = HEAD + "beat 0:\nfeet: first\narms: first\n"
+from .texts import START
+
 WORDS = """benesh 1
 define arms swan wings:        # the right arm higher
   right hand: 0.9 wide, 4.4 high, behind, straight

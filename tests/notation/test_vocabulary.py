@@ -40,6 +40,8 @@ from enpointe.notation.vocabulary import (
 )
 from enpointe.notation.vocabulary_arms import CONTACT_PLACES
 
+from .texts import START
+
 LINES = (0.0, 0.493, 1.026, 1.331, 1.68, 1.853)
 SHOULDER, ROUNDED, STRAIGHT, REACH = 0.155, 0.508, 0.522, 0.678
 LEG_LINES = (0.0, 0.493, 0.850, 1.331, 1.68, 1.853)
@@ -220,9 +222,6 @@ def test_every_name_can_be_written(name: str) -> None:
     """As `names` lists it, with the side that it needs."""
     part, _, position = name.partition(" ")
     key = {"feet": "feet", "arms": "arms", "leg": "right leg", "pose": "pose"}[part]
-    head = (
-        "benesh 1\ntitle: T\nmethod: M\nmetre: 4/4\ntempo: 60\nbeat 0:\nfeet: first\narms: first\n"
-    )
     needs: dict[str, bool] = {
         "feet": position not in ("first", "second"),
         "arms": bool((entry := find_arms(position)) and entry.needs_leading),
@@ -231,7 +230,7 @@ def test_every_name_can_be_written(name: str) -> None:
     }
     side = {"feet": " right front", "arms": " right leads", "leg": "", "pose": " on right"}[part]
     line = f"{key}: {position}{side if needs[part] else ''}\n"
-    assert parse_score(f"{head}beat 1:\n{line}").resolved()
+    assert parse_score(f"{START}beat 1:\n{line}").resolved()
 
 
 @pytest.mark.parametrize(

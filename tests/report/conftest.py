@@ -1,4 +1,4 @@
-"""Dances of two key poses, made once."""
+"""Dances of two key poses, and the reports of them, made once."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import pytest
 from enpointe.comparing import Comparison, compare
 from enpointe.performing import Performance, perform
 from enpointe.posing import Poses, pose
+from enpointe.report import ReportFiles, write_report
 
 from .pages import HOSTILE, short_score
 
@@ -65,3 +66,26 @@ def fallen(physical: Performance) -> Performance:
         **{name: getattr(measures, name)[:kept] for name in figures} | {"margin": margin},
     )
     return dataclasses.replace(physical, recording=cut, measures=less)
+
+
+@pytest.fixture(scope="session")
+def reports(
+    tmp_path_factory: pytest.TempPathFactory,
+    physical: Performance,
+    kinematic: Performance,
+    fallen: Performance,
+    comparison: Comparison,
+    poses: Poses,
+) -> dict[str, ReportFiles]:
+    """A report of each kind, without a film."""
+    dances: dict[str, Performance | Comparison | Poses] = {
+        "physical": physical,
+        "kinematic": kinematic,
+        "fallen": fallen,
+        "comparison": comparison,
+        "poses": poses,
+    }
+    return {
+        name: write_report(dance, tmp_path_factory.mktemp(name), video=False)
+        for name, dance in dances.items()
+    }

@@ -138,7 +138,7 @@ def test_the_shadow_under_a_jump_is_fainter() -> None:
     painter = SketchPainter(MODEL, 120, 120)
     x, y = Projection(view, 120, 120).pixels([0.25, 0.0, 0.0])
     near, far = (
-        sum(painter.paint(qpos, camera=view).getpixel((int(x), int(y))))  # type: ignore[arg-type]
+        np.asarray(painter.paint(qpos, camera=view))[int(y), int(x)].astype(int).sum()
         for qpos in (MODEL.qpos0, high)
     )
     assert near < far

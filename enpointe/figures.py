@@ -1,0 +1,126 @@
+"""The figures that `--json` prints, as types: what docs/figures.md says of each, SI units.
+
+The names are a promise to scripts.
+"""
+
+from __future__ import annotations
+
+from typing import TypedDict
+
+__all__ = [
+    "ComparisonFigures",
+    "DifferenceFigures",
+    "EffortFigures",
+    "FitFigures",
+    "FlightFigures",
+    "KinematicFigures",
+    "PerformanceFigures",
+    "PhysicalFigures",
+    "PoseFigures",
+    "PosesFigures",
+    "RuleFigures",
+]
+
+
+class EffortFigures(TypedDict):
+    """The effort that was asked."""
+
+    name: str
+    time: float
+    weight: float
+    space: float
+
+
+class FitFigures(TypedDict):
+    """The logistic that fits the wrists best."""
+
+    b: float
+    x0: float
+    rms: float
+
+
+class FlightFigures(TypedDict):
+    """One time without load on any sole."""
+
+    start: float
+    end: float
+    height: float
+    turn_deg: float
+
+
+class KinematicFigures(TypedDict):
+    """What every performance has."""
+
+    title: str
+    controller: str
+    effort: EffortFigures
+    tempo: float
+    completed: bool
+    duration: float
+    rules_broken: list[str]
+    logistic: FitFigures | None
+
+
+class PhysicalFigures(TypedDict, total=False):
+    """What a performance under gravity has besides."""
+
+    tempo_danced: float | None
+    lateness_max: float | None
+    fell_at: float | None
+    shortfall_max: float | None
+    fault: str | None
+    steps: int
+    root_force_max: float
+    other_contact_max: float
+    tracking_rms_deg: float
+    support_margin_min: float | None
+    slip_max: float
+    flights: list[FlightFigures]
+    torque_limit_fraction_max: float
+    realtime_factor: float
+
+
+class PerformanceFigures(KinematicFigures, PhysicalFigures):
+    """One performance; without the physical figures if it is kinematic."""
+
+
+class DifferenceFigures(TypedDict):
+    """How far apart two variants are."""
+
+    between: list[str]
+    wrist_path_rms: dict[str, float]
+    joint_rms_deg: float
+
+
+class ComparisonFigures(TypedDict):
+    """Several performances of one score."""
+
+    variants: dict[str, PerformanceFigures]
+    differences: list[DifferenceFigures]
+
+
+class RuleFigures(TypedDict):
+    """One rule of a key pose."""
+
+    rule: str
+    value: float
+    unit: str
+    bound: float
+    at_least: bool
+    held: bool
+
+
+class PoseFigures(TypedDict):
+    """One key pose."""
+
+    name: str
+    qpos: list[float]
+    rules: list[RuleFigures]
+    solve_ms: float
+    recognised_as: str
+
+
+class PosesFigures(TypedDict):
+    """The key poses of a score."""
+
+    poses: list[PoseFigures]

@@ -1,0 +1,131 @@
+"""The options that verbs of the command line share, each bundle a dataclass."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from dataclasses import dataclass, is_dataclass
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from enpointe.console import Console
+
+if TYPE_CHECKING:
+    from enpointe.models import Anthropometry, Style
+
+__all__ = [
+    "DancerOptions",
+    "Effort",
+    "Json",
+    "OutputOptions",
+    "Quiet",
+    "Score",
+    "StyledDancerOptions",
+    "Tempo",
+    "Video",
+    "unbundled",
+]
+
+
+class SexName(StrEnum):
+    FEMALE = "female"
+    MALE = "male"
+
+
+Score = Annotated[str, typer.Argument(help="A shipped score's name, or a .bmn file.")]
+Effort = Annotated[
+    str | None,
+    typer.Option(
+        help="natural, happy, sad, angry or afraid, each with its tempo; or numbers:"
+        " time=-3.5,weight=.41,space=1. Natural at the score's tempo if left out."
+    ),
+]
+Tempo = Annotated[
+    float | None, typer.Option(help="Beats a minute; the effort's or the score's if left out.")
+]
+Video = Annotated[bool, typer.Option(help="Film the dance (the slowest part).")]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
+Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing but errors.")]
+
+
+@dataclass(frozen=True)
+class DancerOptions:
+    """Who dances."""
+
+    height: Annotated[float, typer.Option(help="The dancer's height, m.")] = 1.68
+    mass: Annotated[float, typer.Option(help="The dancer's mass, kg.")] = 54.0
+    sex: Annotated[SexName, typer.Option(help="Whose proportions the dancer has.")] = SexName.FEMALE
+
+    def anthropometry(self) -> Anthropometry:
+        """The measures of the body."""
+        from enpointe.models.anthropometry import Anthropometry, Sex
+
+        return Anthropometry(self.height, self.mass, Sex(self.sex.value))
+
+
+@dataclass(frozen=True)
+class StyledDancerOptions(DancerOptions):
+    """Who dances, and how turned out."""
+
+    turnout: Annotated[float, typer.Option(help="Turnout of each leg, degrees.")] = 66.0
+
+    def style(self) -> Style:
+        """The amounts of the method."""
+        from enpointe.models.style import Style
+
+        return Style(turnout_deg=self.turnout)
+
+
+@dataclass(frozen=True)
+class OutputOptions:
+    """What is written where."""
+
+    out: Annotated[
+        Path | None, typer.Option(help="Folder to write to; named after the input if left out.")
+    ] = None
+    json: Json = False
+    quiet: Quiet = False
+    seed: Annotated[int, typer.Option(help="Seed of what is random; in this verb nothing is.")] = 0
+
+    def console(self) -> Console:
+        """Where the verb speaks."""
+        return Console(json=self.json, quiet=self.quiet)
+
+    def folder(self, source: str) -> Path:
+        """The folder asked for, or the one named after the input."""
+        if self.out is not None:
+            return self.out
+        return Path(Path(source).stem.strip().replace(" ", "-") or "out")
+
+
+def unbundled(verb: Callable[..., int]) -> Callable[..., int]:
+    """The verb as Typer reads it: the fields of each bundle stand among its own options.
+
+    Args:
+        verb: Its bundles are keyword-only parameters without a default.
+    """
+    signature = inspect.signature(verb, eval_str=True)
+    bundles: dict[str, type] = {}
+    flat: list[inspect.Parameter] = []
+    for parameter in signature.parameters.values():
+        if is_dataclass(bundle := parameter.annotation):
+            assert isinstance(bundle, type)
+            bundles[parameter.name] = bundle
+            flat += inspect.signature(bundle, eval_str=True).parameters.values()
+        else:
+            flat.append(parameter)
+
+    def command(**given: object) -> int:
+        for name, bundle in bundles.items():
+            own = {field: given.pop(field) for field in inspect.signature(bundle).parameters}
+            given[name] = bundle(**own)
+        return verb(**given)
+
+    keywords = [each.replace(kind=inspect.Parameter.KEYWORD_ONLY) for each in flat]
+    command.__name__, command.__doc__ = verb.__name__, verb.__doc__
+    command.__annotations__ = {each.name: each.annotation for each in keywords}
+    vars(command)["__signature__"] = signature.replace(parameters=keywords)
+    return command
