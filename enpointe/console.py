@@ -7,6 +7,7 @@ import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import rich.console
 from rich.console import RenderableType
@@ -115,6 +116,8 @@ def _flat(figures: Mapping[str, object], prefix: str = "") -> Iterator[tuple[str
         elif name == "poses" and isinstance(value, list):
             for entry in value:
                 yield entry["name"], _verdict(entry)
+            if len(value) == 1:
+                yield from ((rule["rule"], _measured(rule)) for rule in value[0]["rules"])
         elif isinstance(value, float):
             yield label, f"{value:.4g}"
         elif isinstance(value, list):
@@ -126,14 +129,17 @@ def _flat(figures: Mapping[str, object], prefix: str = "") -> Iterator[tuple[str
 def _verdict(entry: Mapping[str, Any]) -> str:
     """What a solved pose keeps, what it breaks and by how much, and how she cheats."""
     rules = entry["rules"]
-    broken = [r for r in rules if not r["held"]]
-    words = f"{len(rules) - len(broken)} of {len(rules)} rules held in {entry['solve_ms']:.0f} ms"
-    if not broken:
-        words = f"all {len(rules)} rules held in {entry['solve_ms']:.0f} ms"
-    for rule in broken:
-        limit = f"at {'least' if rule['at_least'] else 'most'} {rule['bound']:g}"
-        words += f"\nbroken: {rule['rule']}, {rule['value']:.1f} {rule['unit']} ({limit})"
+    broken = [rule for rule in rules if not rule["held"]]
+    kept = f"{len(rules) - len(broken)} of {len(rules)}" if broken else f"all {len(rules)}"
+    lines = [f"{kept} rules held ({entry['solve_ms']:.0f} ms)"]
+    lines += [f"{rule['rule']}: {_measured(rule)}" for rule in broken]
     if entry["cheats"]:
         cheats = (f"{c['name']} {c['value']:.0f} {c['unit']}" for c in entry["cheats"])
-        words += f"\ncheats: {', '.join(cheats)}"
-    return words
+        lines.append(f"cheats: {', '.join(cheats)}")
+    return "\n".join(lines)
+
+
+def _measured(rule: Mapping[str, Any]) -> str:
+    verdict = "held" if rule["held"] else "broken"
+    limit = f"at {'least' if rule['at_least'] else 'most'} {rule['bound']:g}"
+    return f"{verdict}, {round(rule['value'], 1) + 0.0:.1f} {rule['unit']} ({limit})"
