@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
+from importlib.resources import files
 from inspect import isabstract
 from pathlib import Path
 
@@ -20,7 +21,11 @@ from enpointe.models.rules import Kind, Rule
 from enpointe.motion import PRESETS
 from enpointe.notation.amounts import DEFAULT_DEGREES
 from enpointe.notation.glyphs import GLYPHS
+from enpointe.notation.stage import DIRECTION_WORDS
+from enpointe.notation.tempo import TEMPO_WORDS
 from enpointe.notation.vocabulary import ARM_PLACES, ARMS, FEET, LEGS, POSES
+from enpointe.notation.vocabulary_arms import BODY_PLACES, CONTACT_PLACES
+from enpointe.notation.vocabulary_feet import BENDS, FLOOR
 
 DOCS = Path(__file__).parent
 MARKED = re.compile(
@@ -132,6 +137,47 @@ def degrees() -> str:
     )
 
 
+def tempos() -> str:
+    return table(("word", "beats a minute"), ((word, f"{n:g}") for word, n in TEMPO_WORDS.items()))
+
+
+def stances() -> str:
+    says = {**dict.fromkeys(FLOOR, "the foot"), **dict.fromkeys(BENDS, "the knee")}
+    words = {**FLOOR, **BENDS}
+    return table(
+        ("word", "also", "says of"),
+        ((also[0], ", ".join(also[1:]), says[key]) for key, also in words.items()),
+    )
+
+
+def body() -> str:
+    return table(
+        ("place", "also", "is"),
+        (
+            (words[0], ", ".join(words[1:]), CONTACT_PLACES[place].description)
+            for place, words in BODY_PLACES.items()
+        ),
+    )
+
+
+def directions() -> str:
+    def side(degrees: float) -> str:
+        if degrees in (0.0, 180.0):
+            return f"{degrees:g}°"
+        return f"{'left' if degrees > 0 else 'right'} {abs(degrees):g}°"
+
+    return table(
+        ("direction", "also", "from the audience"),
+        ((words[0], ", ".join(words[1:]), side(d)) for d, words in DIRECTION_WORDS.items()),
+    )
+
+
+def grammar() -> str:
+    text = files("enpointe.notation").joinpath("grammar.lark").read_text("utf-8")
+    rules = text[text.index("start:") : text.index("\n_BENESH:")].strip()
+    return f"\n```lark\n{rules}\n```\n\n"
+
+
 def glyphs() -> str:
     return table(
         ("sign", "shape", "source"),
@@ -232,7 +278,24 @@ def _is_rule(value: object) -> bool:
 
 TABLES: dict[str, Callable[[], str]] = {
     f.__name__: f
-    for f in (feet, legs, arms, poses, places, degrees, glyphs, presets, segments, joints, ballet)
+    for f in (
+        feet,
+        legs,
+        arms,
+        poses,
+        places,
+        degrees,
+        tempos,
+        stances,
+        body,
+        directions,
+        grammar,
+        glyphs,
+        presets,
+        segments,
+        joints,
+        ballet,
+    )
 }
 
 

@@ -224,7 +224,8 @@ def _arm(
     wrist = extremity(figure, side, signs.wrist, figure.stretched_arm, source=source)
     shoulder = figure.shoulders[side]
     elbow = shoulder + figure.upper_arm / figure.straight_arm * (wrist - shoulder)
-    return ArmTarget(ArmShape.STRAIGHT, shoulder, wrist, elbow)
+    lifted = -radians(style.wrist_break_deg)
+    return ArmTarget(ArmShape.STRAIGHT, shoulder, wrist, elbow, wrist_bend=lifted)
 
 
 def _angles(orientation: Orientation) -> Vector:
