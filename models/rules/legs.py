@@ -55,7 +55,7 @@ class KneeOverToe(SidedRule):
     unit: ClassVar[str] = "mm"
     bound: ClassVar[float] = 30.0
     kind: ClassVar[Kind] = Kind.PREFER
-    weight: ClassVar[float] = 100.0
+    weight: ClassVar[float] = 50.0
     source: ClassVar[str] = "ballet teaching (plie: knees over the toes)"
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
@@ -238,7 +238,7 @@ class LegTurnedOut(SidedRule):
     unit: ClassVar[str] = "deg"
     bound: ClassVar[float] = 30.0
     kind: ClassVar[Kind] = Kind.PREFER
-    weight: ClassVar[float] = 1.0
+    weight: ClassVar[float] = 2.0
     source: ClassVar[str] = "Neagle 2005 §4.4.6 (turnout about the thigh)"
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:

@@ -11,7 +11,7 @@ from enpointe.notation import Bend, FloorContact, ResolvedFrame
 __all__ = ["OVERLAPS", "allowed", "how_it_stands"]
 
 KNEE, PELVIS = "knee over the toe", "pelvis as written"
-WEIGHT = "weight in the middle"
+WEIGHT, ON_ONE = "weight in the middle", "weight over the foot"
 ALL = ("perfect", "real", "tall man", "small woman")
 
 
@@ -22,6 +22,7 @@ def _all(rules: set[str]) -> dict[str, set[str]]:
 _ALLOWED: dict[str, dict[str, set[str]]] = {
     # A real hip turns out 54 degrees and feet 66: 12 degrees of a shank's 0.4 m are 80 mm, of which
     # the bent hip's slack gives back the most.
+    "first demi-plié": {"real": {KNEE}},
     "second demi-plié": {"real": {KNEE}},
     "third demi-plié": {"real": {KNEE}},
     "fifth demi-plié": {"real": {KNEE}, "tall man": {PELVIS, KNEE, WEIGHT}},
@@ -34,8 +35,9 @@ _ALLOWED: dict[str, dict[str, set[str]]] = {
     "fourth demi-pointe demi-plié": _all({KNEE}),
     "fourth open demi-pointe demi-plié": _all({KNEE}),
     # The heels stay down in second and both ankles are at the end of their range: the weight stays
-    # over the heels. The tall man's feet are longer for his ankles, here and in the fifth.
-    "second grand plié": {**_all({WEIGHT}), "tall man": {PELVIS, KNEE, WEIGHT}},
+    # over the heels. The tall man's feet are longer for his ankles, here, in fifth and on one foot.
+    "one foot demi-plié": {"tall man": {ON_ONE}},
+    "second grand plié": {**_all({KNEE, WEIGHT}), "tall man": {PELVIS, KNEE, WEIGHT}},
 }
 
 OVERLAPS: dict[tuple[str, str], float] = {
