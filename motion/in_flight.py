@@ -50,21 +50,22 @@ def in_flight(
             for time in _between(outline, flight.start - early, flight.start - late)
         ]
         yield from _moment([each for each in push if is_position(each[1])][-1:])
-        for start, end in (
-            (flight.end, flight.end + _LANDING),
-            (flight.start + late, flight.end - late),
+        for start, end, sure in (
+            (flight.end, flight.end + _LANDING, True),
+            (flight.start + late, flight.end - late, False),
         ):
-            yield from _moment([(time, pose_at(time)) for time in _between(outline, start, end)])
+            times = _between(outline, start, end)
+            yield from _moment([(time, pose_at(time)) for time in times], sure)
 
 
 def _moment(
-    poses: Sequence[tuple[float, Recognition]],
+    poses: Sequence[tuple[float, Recognition]], sure: bool = False
 ) -> Iterator[tuple[KeyMoment, Recognition]]:
     """The one nearest to its names, if any has names."""
     named = [(time, pose) for time, pose in poses if pose.named]
     if named:
         time, pose = min(named, key=lambda each: _off(each[1]))
-        yield KeyMoment(time, False, 0.0, sure=False), pose
+        yield KeyMoment(time, False, 0.0, sure), pose
 
 
 def landed(pose: Recognition) -> Recognition:

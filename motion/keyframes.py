@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
-from scipy.signal import find_peaks
+from scipy.signal import find_peaks, peak_prominences
 
 from enpointe.models.footing import footing, lowest_sole
 from enpointe.models.joints import Joints
@@ -144,7 +144,11 @@ def key_moments(outline: MotionOutline) -> tuple[KeyMoment, ...]:
 
 def _pauses(speed: Array, below: float) -> list[tuple[int, float]]:
     """Where a speed dips between two peaks to less than a share of the lower one, and how deep."""
-    peaks, _ = find_peaks(np.concatenate([[0.0], speed, [0.0]]))
+    padded = np.concatenate([[0.0], speed, [0.0]])
+    peaks, _ = find_peaks(padded)
+    # A ripple in a slow stretch is no peak: nothing beside it would count as a pause.
+    high = peak_prominences(padded, peaks)[0] > (1.0 - _SLIGHT_PAUSE) * padded[peaks]
+    peaks = peaks[high]
     found = []
     for before, after in zip(peaks[:-1] - 1, peaks[1:] - 1, strict=True):
         low = before + int(np.argmin(speed[before : after + 1]))

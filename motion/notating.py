@@ -132,7 +132,7 @@ def _positions(
     unsure = [*in_flight(outline, pose_at), *(each for each in found if not each[0].sure)]
     for moment, pose in unsure:
         apart = min(abs(moment.time - other.time) for other, _ in kept)
-        if apart >= LEAST_SPACING and is_position(pose):
+        if apart >= LEAST_SPACING and (moment.sure or is_position(pose)):
             kept.append((moment, pose))
     return sorted(kept, key=lambda each: each[0].time)
 
