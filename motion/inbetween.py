@@ -7,7 +7,7 @@ movement's timing is applied along the way afterwards.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import mujoco
@@ -20,9 +20,9 @@ from enpointe.models.leg_target import LegTarget
 from enpointe.models.rules.balance import centroid
 from enpointe.models.target import ArmShape, ArmTarget, PoseTarget
 from enpointe.motion.arm_path import ArmPath
+from enpointe.motion.contacts import centre_of_mass, leg_paths
 from enpointe.motion.effort import Effort
 from enpointe.motion.inflection import inflected
-from enpointe.motion.leg_path import STEP, LegPath
 from enpointe.motion.slerp import slerp_poses
 from enpointe.notation import Side
 
@@ -131,28 +131,14 @@ class _Way:
             )
             for side in Side
         }
-        self._legs = {side: LegPath(solver.model, side, start, end) for side in Side}
-        if self._stepping:
-            arrives_at, leaves_at = STEP
-            self._legs = {
-                side: replace(path, arrives_at=arrives_at, leaves_at=leaves_at)
-                for side, path in self._legs.items()
-            }
-
-    @property
-    def _stepping(self) -> bool:
-        """Whether the weight goes from foot to foot: one arrives, then the other leaves."""
-        paths = self._legs.values()
-        return (
-            any(path.leaves for path in paths)
-            and any(path.arrives for path in paths)
-            and not any(path.stays for path in paths)
-        )
+        self._legs = leg_paths(solver.model, start, end)
+        self._moving = com is None and any(path.yields for path in self._legs.values())
+        self._knots = [(0.0, start), (1.0, end)]
 
     @property
     def shares(self) -> tuple[float, ...]:
-        """Where poses are solved; more of them, and the very moments, where a foot steps."""
-        if not self.steps:
+        """Where poses are solved; more of them where a leg is off the floor, and when it steps."""
+        if self._com is not None or all(path.stays for path in self._legs.values()):
             return tuple(np.linspace(0.0, 1.0, INTERMEDIATE + 2))
         moments = [*np.linspace(0.0, 1.0, 2 * INTERMEDIATE + 3)]
         moments += [path.leaves_at for path in self._legs.values() if path.leaves]
@@ -160,31 +146,34 @@ class _Way:
         return tuple(np.unique(np.round(moments, 6)))
 
     def plan_contacts(self) -> None:
-        """Solve the poses at which a foot leaves and arrives: the swing's two ends."""
+        """Solve the poses at which feet leave and arrive: the ends of swings."""
         if not self.steps:
             return
-        planned = {}
+        planned: dict[Side, dict[str, KeyPose]] = {side: {} for side in Side}
         for side, path in self._legs.items():
-            lift = (
-                self._contact(side, path.leaves_at, path.leaving(path.leaves_at))
-                if path.leaves
-                else None
+            if path.leaves:
+                planned[side]["lift"] = self._contact(path.leaves_at, {side: path.leaving})
+            if path.arrives:
+                planned[side]["touch"] = self._contact(path.arrives_at, {side: path.arriving})
+        self._knots.sort(key=lambda knot: knot[0])
+        for side, path in self._legs.items():
+            knots = tuple(self._knots) if self._moving else ()
+            self._legs[side] = replace(
+                path,
+                lift=planned[side].get("lift"),
+                touch=planned[side].get("touch"),
+                knots=knots,
             )
-            touch = (
-                self._contact(side, path.arrives_at, path.arriving(path.arrives_at))
-                if path.arrives
-                else None
-            )
-            planned[side] = replace(path, lift=lift, touch=touch)
-        self._legs = planned
 
-    def _contact(self, side: Side, share: float, standing: LegTarget) -> KeyPose:
+    def _contact(self, share: float, standing: Mapping[Side, Callable[[float], LegTarget]]) -> KeyPose:
         """The pose at the moment a foot leaves or arrives: still or already in its place."""
         target = self.at(share)
-        legs = {**target.legs, side: standing}
+        legs = {**target.legs, **{side: leg(share) for side, leg in standing.items()}}
         ends = self._first.qpos, self._last.qpos
         guess = slerp_poses(self._solver.model, *ends, np.array([share]))[0]
-        return self._solver.solve(replace(target, legs=legs), guess)
+        pose = self._solver.solve(replace(target, legs=legs), guess)
+        self._knots.append((share, pose))
+        return pose
 
     @property
     def steps(self) -> bool:
@@ -218,7 +207,16 @@ class _Way:
         )
         if self._com is not None:
             return replace(target, com=self._com(share))
+        if self._moving:
+            return replace(target, com=self._passing_weight(share))
         return replace(target, weight=self._weight(share))
+
+    def _passing_weight(self, share: float) -> Array:
+        """The centre of mass on its way from knot to knot, (3,), m."""
+        knots = sorted(self._knots, key=lambda knot: knot[0])
+        places = [centre_of_mass(self._solver.model, pose.qpos) for _, pose in knots]
+        shares = [at for at, _ in knots]
+        return np.array([np.interp(share, shares, axis) for axis in np.array(places).T])
 
     def _weight(self, share: float) -> Array | None:
         """Where the weight is: over the feet that stay, before others leave and after they come."""

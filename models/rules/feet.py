@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from enpointe.models.foot_positions import Footprint
 from enpointe.models.kinematics import SymbolicBody
-from enpointe.models.leg_target import FOOT_JOINTS, POINTED_DEG, InAir, OnPointe, Standing
+from enpointe.models.leg_target import FOOT_JOINTS, POINTED_DEG, OnPointe, Passing, Standing
 from enpointe.models.rules.base import Kind, Rule, SidedRule, Symbols
 from enpointe.models.target import PoseTarget
 from enpointe.notation import Side
@@ -23,6 +23,8 @@ __all__ = [
     "FootOnItsWayToPoint",
     "FootRaised",
     "FootTurnout",
+    "FootYields",
+    "HeelAboveTheFloor",
     "OnTheTip",
     "PointedFoot",
     "ToesFlat",
@@ -97,6 +99,15 @@ class FootRaised(_FootRule):
         return {f"{self.side}_rise": np.array(leg.rise)}
 
 
+class FootYields(FootRaised):
+    """The heel of a foot that weight is coming to or leaving rises as the weight needs it."""
+
+    name: ClassVar[str] = "heel that yields"
+    bound: ClassVar[float] = 60.0
+    kind: ClassVar[Kind] = Kind.PREFER
+    weight: ClassVar[float] = 5.0
+
+
 class FootTurnout(_FootRule):
     """The foot points where the position asks: its axis crossed with the print's is 0.
 
@@ -161,8 +172,8 @@ class PointedFoot(SidedRule):
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
         leg = target.legs[Side(self.side)]
-        passing = leg.foot if isinstance(leg, InAir) else None
-        return {f"{self.side}_foot_angles": np.radians(POINTED_DEG) if passing is None else passing}
+        angles = leg.angles[4:] if isinstance(leg, Passing) else np.radians(POINTED_DEG)
+        return {f"{self.side}_foot_angles": angles}
 
 
 class FootOnItsWayToPoint(PointedFoot):
@@ -175,20 +186,34 @@ class FootOnItsWayToPoint(PointedFoot):
 
 
 class FootAboveTheFloor(SidedRule):
-    """No part of a passing foot goes through the floor: heel, ball and toe tip at z >= 0."""
+    """No part of a moving foot goes through the floor: heel, ball and tip, both rims, z >= 0."""
 
     name: ClassVar[str] = "foot above the floor"
     unit: ClassVar[str] = "mm"
     bound: ClassVar[float] = 0.0
     kind: ClassVar[Kind] = Kind.AT_LEAST
     source: ClassVar[str] = "Neagle 2005 §4.5.3 e (toes below the floor)"
+    parts: ClassVar[tuple[str, ...]] = ("heel", "ball", "tip")
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
-        points = ("heel", "ball", "toe_tip")
-        return ca.vertcat(*(body.site(f"{self.side}_{p}")[2] for p in points))
+        heights = []
+        for part in self.parts:
+            for rim in ("inner", "outer"):
+                geom = body.model.geom(f"{self.side}_{part}_{rim}")
+                frame = body.frame(body.model.body(int(geom.bodyid[0])).name)
+                heights.append(frame.point(geom.pos)[2] - float(geom.size[0]))
+        return ca.vertcat(*heights)
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
         return {}
+
+
+class HeelAboveTheFloor(FootAboveTheFloor):
+    """The heel of a foot whose ball stays on its mark does not go through the floor."""
+
+    name: ClassVar[str] = "heel above the floor"
+    bound: ClassVar[float] = -0.5
+    parts: ClassVar[tuple[str, ...]] = ("heel",)
 
 
 class TurnoutAtTheHip(SidedRule):

@@ -1,0 +1,200 @@
+"""The way of a leg through the air: joint by joint from one pose to another, clear of what is there.
+
+Hip, knee and foot go from the angles of the one pose to those of the other, slow at both ends, so
+that the way meets both poses; the hip's turn by its twist about the thigh, which is what turnout
+is. Where the way would lead through the other leg the leg opens to the side; where it would lead
+through the floor the foot gives up its point and brushes through, the knee bending if it must. The
+least detour that is clear is taken.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from math import log, pi, radians, sin, sqrt
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from enpointe.models.leg_target import FOOT_JOINTS, LEG_JOINTS
+from enpointe.notation import Side
+
+__all__ = ["Detour", "LegSwing", "leg_angles", "smooth"]
+
+Vector = NDArray[np.float64]
+APART = 0.006
+"""Air between legs that pass each other, m."""
+BRUSH = 0.015
+"""A foot on its way that would be deeper in the floor than this, m, is drawn up; one that would be
+less deep brushes along the floor."""
+SAMPLES = 11
+_BODIES = ("thigh", "shank", "foot")
+_PARTS = ("heel", "ball", "tip")
+
+
+@dataclass(frozen=True, slots=True)
+class Detour:
+    """What a leg does on its way to pass the other leg, or the floor.
+
+    Attributes:
+        opening: How far it opens to the side, rad.
+        bend: How far its knee bends besides, rad.
+        flat: Whether the foot is flat then, rather than pointed.
+        at: Share of the way at which it does so most.
+    """
+
+    opening: float = 0.0
+    bend: float = 0.0
+    flat: bool = False
+    at: float = 0.5
+
+    def shape(self, share: float) -> float:
+        """From 0 at both ends to 1 at `at`: sin^2 of the share, bent so that `at` is its middle."""
+        return sin(pi * share ** (log(0.5) / log(self.at))) ** 2
+
+
+STRAIGHT = Detour()
+BRUSHING_DEG = (5.0, 0.0, 0.0, 0.0)
+"""A foot that brushes through over the floor, in the order of `FOOT_JOINTS`."""
+OPENED = (4.0, 8.0, 12.0, 16.0, 20.0)
+DRAWN_UP = (0.0, 6.0, 12.0, 18.0, 24.0, 30.0, 36.0, 42.0)
+"""Detours, in the order in which they are tried, degrees of the hip: opened, then with a flat foot
+drawn up, which bends the knee by twice as much and leaves the foot under the hip."""
+
+
+@dataclass(frozen=True)
+class LegSwing:
+    """A leg's way between two poses.
+
+    Attributes:
+        model: The dancer.
+        side: Whose leg.
+        start: Configuration (nq,) that it leaves.
+        end: Configuration (nq,) that it comes to.
+        floor: Whether there is a floor to pass; there is none in a flight.
+    """
+
+    model: mujoco.MjModel
+    side: Side
+    start: Vector
+    end: Vector
+    floor: bool = True
+
+    def at(self, share: float) -> Vector:
+        """The leg's angles (8,), in the order of `LEG_JOINTS`, at a share of the way, rad."""
+        return self._led(share, self.detour)
+
+    @cached_property
+    def detour(self) -> Detour:
+        """The least that leads the leg clear, or the clearest there is."""
+        shares = np.linspace(0.0, 1.0, SAMPLES)[1:-1]
+        room = [self._room(STRAIGHT, float(share)) for share in shares]
+        if min(room) >= 0.0:
+            return STRAIGHT
+        worst = float(np.clip(shares[int(np.argmin(room))], 0.35, 0.65))
+        found, most = STRAIGHT, min(room)
+        for detour in _detours(worst):
+            least = min(self._room(detour, float(share)) for share in shares)
+            if least > most + 1e-4:
+                found, most = detour, least
+            if least >= 0.0:
+                break
+        return found
+
+    def _led(self, share: float, detour: Detour) -> Vector:
+        moved = smooth(share)
+        first, last = (_with_twist(leg_angles(self.model, q, self.side)) for q in self._ends)
+        angles = (1 - moved) * first + moved * last
+        shape = 0.0 if detour == STRAIGHT else detour.shape(share)
+        # The hip swings about two axes at 45 degrees: sideways is both, in opposite senses.
+        angles[:2] += shape * detour.opening / sqrt(2.0) * np.array([1.0, -1.0])
+        angles[LEG_JOINTS.index("knee_bend")] += shape * detour.bend
+        if detour.flat:
+            foot = slice(-len(FOOT_JOINTS), None)
+            angles[foot] += shape * (np.radians(BRUSHING_DEG) - angles[foot])
+        angles[2] -= _twist_of_swing(angles[0], angles[1])
+        return angles
+
+    @property
+    def _ends(self) -> tuple[Vector, Vector]:
+        return self.start, self.end
+
+    def _room(self, detour: Detour, share: float) -> float:
+        """Air to spare between the legs and over the floor, m, no more than 0."""
+        data = mujoco.MjData(self.model)
+        data.qpos[:] = (1 - share) * self.start + share * self.end
+        mujoco.mj_normalizeQuat(self.model, data.qpos)
+        data.qpos[_addresses(self.model, self.side)] = self._led(share, detour)
+        mujoco.mj_kinematics(self.model, data)
+        room = min(0.0, _between_legs(self.model, data, APART) - APART)
+        if self.floor:
+            room = min(room, _above_floor(self.model, data, self.side) + BRUSH)
+        return room
+
+
+def leg_angles(model: mujoco.MjModel, qpos: Vector, side: Side) -> Vector:
+    """A leg's angles (8,) in a configuration (nq,), in the order of `LEG_JOINTS`, rad."""
+    return np.array(qpos[_addresses(model, side)])
+
+
+def _with_twist(angles: Vector) -> Vector:
+    """A leg's angles with the twist of the thigh about itself for the third of the hip's."""
+    out = angles.copy()
+    out[2] += _twist_of_swing(angles[0], angles[1])
+    return out
+
+
+def _twist_of_swing(lifted: float, crossed: float) -> float:
+    """What the hip's two swings turn the thigh about itself, rad (`thigh_twist` without a turn)."""
+    half = sqrt(0.5)
+    axes = np.array([[half, -half, 0.0], [-half, -half, 0.0]])
+    swung = Rotation.from_rotvec(lifted * axes[0]) * Rotation.from_rotvec(crossed * axes[1])
+    x, _, up = swung.as_matrix().T
+    # Where the shortest swing from hanging to the same direction takes front and left.
+    shortest = Rotation.align_vectors([-up], [[0.0, 0.0, -1.0]])[0]
+    front, left = shortest.apply([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    return float(np.arctan2(x @ left, x @ front))
+
+
+def smooth(share: float) -> float:
+    """From 0 to 1 with no speed at either end: 3 s^2 - 2 s^3."""
+    return share * share * (3.0 - 2.0 * share)
+
+
+def _detours(at: float) -> list[Detour]:
+    opened = [Detour(radians(d), at=at) for d in OPENED]
+    return opened + [Detour(radians(d), radians(2 * d), True, at) for d in DRAWN_UP]
+
+
+@lru_cache(maxsize=8)
+def _addresses(model: mujoco.MjModel, side: Side) -> NDArray[np.int64]:
+    return np.array([model.joint(f"{side}_{joint}").qposadr[0] for joint in LEG_JOINTS])
+
+
+def _between_legs(model: mujoco.MjModel, data: mujoco.MjData, most: float) -> float:
+    """Least distance between a limb of one leg and one of the other, m, below zero inside."""
+    ends = np.empty(6)
+    least = most
+    for one in _limbs(model, Side.LEFT):
+        for other in _limbs(model, Side.RIGHT):
+            least = min(least, float(mujoco.mj_geomDistance(model, data, one, other, most, ends)))
+    return least
+
+
+@lru_cache(maxsize=8)
+def _limbs(model: mujoco.MjModel, side: Side) -> tuple[int, ...]:
+    return tuple(int(model.geom(f"{side}_{part}_limb").id) for part in _BODIES)
+
+
+def _above_floor(model: mujoco.MjModel, data: mujoco.MjData, side: Side) -> float:
+    """Height of the lowest point of a sole, m."""
+    geoms = _soles(model, side)
+    return float(np.min(data.geom_xpos[geoms, 2] - model.geom_size[geoms, 0]))
+
+
+@lru_cache(maxsize=8)
+def _soles(model: mujoco.MjModel, side: Side) -> NDArray[np.int64]:
+    rims = ("inner", "outer")
+    return np.array([model.geom(f"{side}_{p}_{rim}").id for p in _PARTS for rim in rims])
