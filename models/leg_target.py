@@ -55,7 +55,13 @@ class Standing:
     def soles(self, figure: Figure) -> NDArray[np.float64]:
         """Points of the sole that bear weight, (S, 2), m."""
         corners = self.footprint.sole(figure)
-        return corners if self.rise < radians(1.0) else corners[2:]
+        risen = min(self.rise / radians(RISEN_DEG), 1.0)
+        return np.vstack([(1 - risen) * corners[:2] + risen * corners[2:4], corners[2:]])
+
+
+RISEN_DEG = 15.0
+"""A foot raised by this much bears on ball and toes alone; on the way there the heel gives its share
+up by degrees, so that the weight need not leap as the heel leaves the floor."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,42 +14,62 @@ import numpy as np
 from numpy.typing import NDArray
 
 from enpointe.models.keypose import KeyPose
+from enpointe.motion.clock import Clock
+from enpointe.motion.effort import Effort
 from enpointe.motion.leg_path import LegPath
 from enpointe.notation import Side
 
 __all__ = ["centre_of_mass", "leg_paths"]
 
 Array = NDArray[np.float64]
-STEP = (0.4, 0.6)
-"""Shares of a step, from one foot to the other, at which the one arrives and the other leaves."""
+WEIGHT_SHIFT = 0.25
+"""Share of the time in which weight moves before a foot leaves, or after it arrives."""
+STEP = (0.5, 0.6)
+"""Shares of a step's time, from one foot to the other, at which the one arrives and the other
+leaves."""
 SHIFT = 0.55
-"""Share of a passage in which the weight goes a long way before a foot leaves, or after one has
+"""Share of the time in which the weight goes a long way before a foot leaves, or after one has
 arrived."""
+SLID = 0.06
+"""A foot that stays and is moved farther than this slides, m."""
 FAR = 0.06
-"""A foot that stays and is moved farther than this slides; a weight that is moved farther passes
-over yielding legs, m."""
+"""A weight that is moved farther than this passes over yielding legs, m."""
 
 
-def leg_paths(model: mujoco.MjModel, start: KeyPose, end: KeyPose) -> dict[Side, LegPath]:
+def leg_paths(
+    model: mujoco.MjModel, start: KeyPose, end: KeyPose, effort: Effort
+) -> dict[Side, LegPath]:
     """Both legs' ways between two key poses, with the moments of their feet."""
+
+    clock = Clock(effort)
+    at = clock.share
     paths = {side: LegPath(model, side, start, end) for side in Side}
     leaves = any(path.leaves for path in paths.values())
     arrives = any(path.arrives for path in paths.values())
+    if not (leaves or arrives):
+        return paths
+    paths = {side: _at_moments(path, clock) for side, path in paths.items()}
     if leaves and arrives:
         arrival, leaving = STEP
+        moments = {"arrives_at": at(arrival), "leaves_at": at(leaving)}
         return {
-            side: replace(path, arrives_at=arrival, leaves_at=leaving, yields=True)
-            for side, path in paths.items()
+            side: replace(path, **moments, yields=True, steps=True) for side, path in paths.items()
         }
     way = centre_of_mass(model, end.qpos) - centre_of_mass(model, start.qpos)
-    slides = any(path.travels > FAR for path in paths.values())
-    if not (leaves or arrives) or not (slides or float(np.hypot(*way[:2])) > FAR):
+    slides = any(path.travels > SLID for path in paths.values())
+    if not (slides or float(np.hypot(*way[:2])) > FAR):
         return paths
-    window = (0.0, SHIFT) if leaves else (1.0 - SHIFT, 1.0)
+    late, early = at(SHIFT), at(1.0 - SHIFT)
+    window = (0.0, late) if leaves else (early, 1.0)
     return {
-        side: replace(path, leaves_at=SHIFT, arrives_at=1.0 - SHIFT, slides=window, yields=True)
+        side: replace(path, leaves_at=late, arrives_at=early, slides=window, yields=True)
         for side, path in paths.items()
     }
+
+
+def _at_moments(path: LegPath, clock: Clock) -> LegPath:
+    early, late = clock.share(WEIGHT_SHIFT), clock.share(1.0 - WEIGHT_SHIFT)
+    return replace(path, clock=clock, leaves_at=early, arrives_at=late)
 
 
 def centre_of_mass(model: mujoco.MjModel, qpos: Array) -> Array:

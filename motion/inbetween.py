@@ -7,7 +7,7 @@ movement's timing is applied along the way afterwards.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import mujoco
@@ -131,7 +131,7 @@ class _Way:
             )
             for side in Side
         }
-        self._legs = leg_paths(solver.model, start, end)
+        self._legs = leg_paths(solver.model, start, end, effort)
         self._moving = com is None and any(path.yields for path in self._legs.values())
         self._knots = [(0.0, start), (1.0, end)]
 
@@ -140,7 +140,8 @@ class _Way:
         """Where poses are solved; more of them where a leg is off the floor, and when it steps."""
         if self._com is not None or all(path.stays for path in self._legs.values()):
             return tuple(np.linspace(0.0, 1.0, INTERMEDIATE + 2))
-        moments = [*np.linspace(0.0, 1.0, 2 * INTERMEDIATE + 3)]
+        clock = next(iter(self._legs.values())).clock
+        moments = [clock.share(t) for t in np.linspace(0.0, 1.0, 2 * INTERMEDIATE + 3)]
         moments += [path.leaves_at for path in self._legs.values() if path.leaves]
         moments += [path.arrives_at for path in self._legs.values() if path.arrives]
         return tuple(np.unique(np.round(moments, 6)))
@@ -152,9 +153,9 @@ class _Way:
         planned: dict[Side, dict[str, KeyPose]] = {side: {} for side in Side}
         for side, path in self._legs.items():
             if path.leaves:
-                planned[side]["lift"] = self._contact(path.leaves_at, {side: path.leaving})
+                planned[side]["lift"] = self._contact(path.leaves_at, side, path.leaving)
             if path.arrives:
-                planned[side]["touch"] = self._contact(path.arrives_at, {side: path.arriving})
+                planned[side]["touch"] = self._contact(path.arrives_at, side, path.arriving)
         self._knots.sort(key=lambda knot: knot[0])
         for side, path in self._legs.items():
             knots = tuple(self._knots) if self._moving else ()
@@ -165,13 +166,20 @@ class _Way:
                 knots=knots,
             )
 
-    def _contact(self, share: float, standing: Mapping[Side, Callable[[float], LegTarget]]) -> KeyPose:
-        """The pose at the moment a foot leaves or arrives: still or already in its place."""
+    def _contact(
+        self, share: float, side: Side, standing: Callable[[float], LegTarget]
+    ) -> KeyPose:
+        """The pose at the moment a foot leaves or arrives: still or already in its place.
+
+        It is far from both key poses, and the nearest solution to one may be a strained one; the
+        least strained is taken.
+        """
         target = self.at(share)
-        legs = {**target.legs, **{side: leg(share) for side, leg in standing.items()}}
+        target = replace(target, legs={**target.legs, side: standing(share)})
         ends = self._first.qpos, self._last.qpos
-        guess = slerp_poses(self._solver.model, *ends, np.array([share]))[0]
-        pose = self._solver.solve(replace(target, legs=legs), guess)
+        midway = slerp_poses(self._solver.model, *ends, np.array([share]))[0]
+        poses = [self._solver.solve(target, guess) for guess in (*ends, midway)]
+        pose = min(poses, key=_strain)
         self._knots.append((share, pose))
         return pose
 
@@ -229,6 +237,12 @@ class _Way:
         moved = float(np.clip((share - low) / (high - low), 0.0, 1.0))
         first, last = centroid(self._start.support), centroid(self._end.support)
         return np.asarray((1 - moved) * first + moved * last)
+
+
+def _strain(pose: KeyPose) -> tuple[bool, float]:
+    """Whether a pose breaks a rule that it must keep, and how far it is from what it prefers."""
+    wishes = [r for r in pose.certificate.results if not r.must]
+    return not pose.certificate.legal, sum((r.value / r.bound) ** 2 for r in wishes)
 
 
 def _as_solved(model: mujoco.MjModel, pose: KeyPose, side: Side) -> ArmTarget:

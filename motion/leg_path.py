@@ -27,16 +27,15 @@ from enpointe.models.leg_target import (
     Passing,
     Standing,
 )
+from enpointe.motion.clock import Clock
 from enpointe.motion.leg_swing import LegSwing, leg_angles
 from enpointe.notation import Side
 
-__all__ = ["WEIGHT_SHIFT", "LegPath"]
+__all__ = ["LegPath"]
 
 Vector = NDArray[np.float64]
 STRETCH = 0.4
 """Share of a flight in which a foot stretches, or gives itself up to the floor again."""
-WEIGHT_SHIFT = 0.25
-"""Share of a passage in which weight moves before a foot leaves, or after it arrives."""
 ROLL_DEG = 35.0
 """How far the heel is raised from the floor as a foot steps off it or on to it: a dancer's foot
 rolls through, by toes, ball and heel."""
@@ -57,6 +56,9 @@ class LegPath:
         touch: The pose at the moment it arrives: on the floor, the weight not yet on it.
         slides: Shares of the passage between which a foot that stays is moved to its new place.
         yields: Whether heel and knee of a standing leg give way to a passing weight.
+        steps: Whether the weight goes from one foot to the other, so that feet roll off and on.
+        clock: Of the passage: a foot that steps is timed by the floor under it, not by the quality
+            of the movement.
         knots: Shares of the passage and poses that are solved already: between them heel and knee
             of a leg that yields go by degrees.
     """
@@ -65,12 +67,14 @@ class LegPath:
     side: Side
     start: KeyPose
     end: KeyPose
-    leaves_at: float = WEIGHT_SHIFT
-    arrives_at: float = 1.0 - WEIGHT_SHIFT
+    leaves_at: float = 0.0
+    arrives_at: float = 1.0
     lift: KeyPose | None = None
     touch: KeyPose | None = None
     slides: tuple[float, float] = (0.0, 1.0)
     yields: bool = False
+    steps: bool = False
+    clock: Clock = Clock()
     knots: tuple[tuple[float, KeyPose], ...] = ()
 
     @property
@@ -96,9 +100,21 @@ class LegPath:
 
     def swing(self, share: float) -> float:
         """How far the swing is at `share` of the passage: 0 still standing, 1 arrived."""
-        low = self.leaves_at if self.leaves else 0.0
-        high = self.arrives_at if self.arrives else 1.0
-        return float(np.clip((share - low) / (high - low), 0.0, 1.0))
+        low, high = self._window
+        begin, end = self.clock.moment(low), self.clock.moment(high)
+        return float(np.clip((self.clock.moment(share) - begin) / (end - begin), 0.0, 1.0))
+
+    @property
+    def _window(self) -> tuple[float, float]:
+        """Shares of the passage between which the leg swings."""
+        return self.leaves_at if self.leaves else 0.0, self.arrives_at if self.arrives else 1.0
+
+    def _meanwhile(self, swing: float) -> float:
+        """How far the rest of the body is between the two ends of the swing."""
+        low, high = self._window
+        begin, end = self.clock.moment(low), self.clock.moment(high)
+        share = self.clock.share(begin + swing * (end - begin))
+        return (share - low) / (high - low)
 
     def at(self, share: float, *, aloft: bool = False) -> LegTarget:
         """What the leg is asked at `share` of the passage, on the floor or `aloft`."""
@@ -168,7 +184,7 @@ class LegPath:
         """Rise and bend (rad) wished of a leg that yields: between the knots by degrees."""
         knots = [(at, pose) for at, pose in self.knots if self._stands(at)]
         if len(knots) < 2:
-            rolls = 0.0 < share < 1.0 and not self.stays
+            rolls = 0.0 < share < 1.0 and self.steps
             return (max(rise, radians(ROLL_DEG)) if rolls else rise), bend
         shares = [at for at, _ in knots]
         angles = np.array([leg_angles(self.model, pose.qpos, self.side) for _, pose in knots])
@@ -186,7 +202,7 @@ class LegPath:
     @cached_property
     def _swing(self) -> LegSwing:
         start, end = self.lift or self.start, self.touch or self.end
-        return LegSwing(self.model, self.side, start.qpos, end.qpos)
+        return LegSwing(self.model, self.side, start.qpos, end.qpos, body=self._meanwhile)
 
     def _aloft(self, share: float) -> Passing:
         """A leg in a flight, its foot soon stretched, and given up before landing."""

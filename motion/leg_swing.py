@@ -9,6 +9,7 @@ least detour that is clear is taken.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from math import log, pi, radians, sin, sqrt
@@ -26,9 +27,11 @@ __all__ = ["Detour", "LegSwing", "leg_angles", "smooth"]
 Vector = NDArray[np.float64]
 APART = 0.006
 """Air between legs that pass each other, m."""
-BRUSH = 0.015
-"""A foot on its way that would be deeper in the floor than this, m, is drawn up; one that would be
-less deep brushes along the floor."""
+BRUSH, PASS = 0.05, 0.015
+"""A foot on its way that would be deeper in the floor than this, m, makes a detour; one that is less
+deep gives up its point and brushes along the floor: from the floor or to it, or passing."""
+EFFORT = 0.03
+"""How much of a clearance that is lacking a detour of one radian must make up to be worth it, m."""
 SAMPLES = 11
 _BODIES = ("thigh", "shank", "foot")
 _PARTS = ("heel", "ball", "tip")
@@ -74,6 +77,7 @@ class LegSwing:
         start: Configuration (nq,) that it leaves.
         end: Configuration (nq,) that it comes to.
         floor: Whether there is a floor to pass; there is none in a flight.
+        body: How far the rest of the body is on its way, at a share of the leg's.
     """
 
     model: mujoco.MjModel
@@ -81,6 +85,7 @@ class LegSwing:
     start: Vector
     end: Vector
     floor: bool = True
+    body: Callable[[float], float] = float
 
     def at(self, share: float) -> Vector:
         """The leg's angles (8,), in the order of `LEG_JOINTS`, at a share of the way, rad."""
@@ -88,18 +93,20 @@ class LegSwing:
 
     @cached_property
     def detour(self) -> Detour:
-        """The least that leads the leg clear, or the clearest there is."""
-        shares = np.linspace(0.0, 1.0, SAMPLES)[1:-1]
-        room = [self._room(STRAIGHT, float(share)) for share in shares]
-        if min(room) >= 0.0:
+        """The least that leads the leg as clear as its two ends are, or the best that there is."""
+        shares = np.linspace(0.0, 1.0, SAMPLES)
+        room = np.array([self._room(STRAIGHT, float(share)) for share in shares])
+        enough = min(room[0], room[-1])
+        if room.min() >= enough:
             return STRAIGHT
-        worst = float(np.clip(shares[int(np.argmin(room))], 0.35, 0.65))
-        found, most = STRAIGHT, min(room)
+        worst = float(np.clip(shares[int(room.argmin())], 0.35, 0.65))
+        found, best = STRAIGHT, float(room.min())
         for detour in _detours(worst):
-            least = min(self._room(detour, float(share)) for share in shares)
-            if least > most + 1e-4:
-                found, most = detour, least
-            if least >= 0.0:
+            least = min(self._room(detour, float(share)) for share in shares[1:-1])
+            worth = min(least, enough) - EFFORT * (detour.opening + detour.bend)
+            if worth > best:
+                found, best = detour, worth
+            if least >= enough:
                 break
         return found
 
@@ -121,16 +128,28 @@ class LegSwing:
     def _ends(self) -> tuple[Vector, Vector]:
         return self.start, self.end
 
+    @cached_property
+    def _brush(self) -> float:
+        """How deep in the floor the way may lead, m."""
+        data = mujoco.MjData(self.model)
+        for qpos in self._ends:
+            data.qpos[:] = qpos
+            mujoco.mj_kinematics(self.model, data)
+            if _above_floor(self.model, data, self.side) < BRUSH:
+                return BRUSH
+        return PASS
+
     def _room(self, detour: Detour, share: float) -> float:
         """Air to spare between the legs and over the floor, m, no more than 0."""
         data = mujoco.MjData(self.model)
-        data.qpos[:] = (1 - share) * self.start + share * self.end
+        moved = self.body(share)
+        data.qpos[:] = (1 - moved) * self.start + moved * self.end
         mujoco.mj_normalizeQuat(self.model, data.qpos)
         data.qpos[_addresses(self.model, self.side)] = self._led(share, detour)
         mujoco.mj_kinematics(self.model, data)
         room = min(0.0, _between_legs(self.model, data, APART) - APART)
         if self.floor:
-            room = min(room, _above_floor(self.model, data, self.side) + BRUSH)
+            room = min(room, _above_floor(self.model, data, self.side) + self._brush)
         return room
 
 
@@ -159,8 +178,14 @@ def _twist_of_swing(lifted: float, crossed: float) -> float:
 
 
 def smooth(share: float) -> float:
-    """From 0 to 1 with no speed at either end: 3 s^2 - 2 s^3."""
-    return share * share * (3.0 - 2.0 * share)
+    """From 0 to 1 with no speed at either end, gaining it and losing it in `EASE` of the way."""
+    if share > 0.5:
+        return 1.0 - smooth(1.0 - share)
+    top = 1.0 / (1.0 - EASE)
+    return 0.5 * top * share**2 / EASE if share < EASE else top * (share - 0.5 * EASE)
+
+
+EASE = 0.3
 
 
 def _detours(at: float) -> list[Detour]:
