@@ -27,7 +27,7 @@ WEIGHT_SHIFT = 0.25
 STEP = (0.5, 0.6)
 """Shares of a step's time, from one foot to the other, at which the one arrives and the other
 leaves."""
-SHIFT = 0.55
+SHIFT = 0.4
 """Share of the time in which the weight goes a long way before a foot leaves, or after one has
 arrived."""
 SLID = 0.06

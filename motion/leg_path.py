@@ -205,16 +205,26 @@ class LegPath:
         return LegSwing(self.model, self.side, start.qpos, end.qpos, body=self._meanwhile)
 
     def _aloft(self, share: float) -> Passing:
-        """A leg in a flight, its foot soon stretched, and given up before landing."""
+        """A leg in a flight: its foot stretches on the way up, and is given up on the way down.
+
+        In a flight from floor to floor without a pose between it stretches and is given up again.
+        """
         angles = self._flight.at(share)
-        pose, far = (self.start, share) if share < 0.5 else (self.end, 1.0 - share)
-        own = leg_angles(self.model, pose.qpos, self.side)[-len(FOOT_JOINTS) :]
-        stretched = own + min(far / STRETCH, 1.0) * (np.radians(POINTED_DEG) - own)
-        return Passing(np.concatenate([angles[: -len(FOOT_JOINTS)], stretched]))
+        foot = angles[-len(FOOT_JOINTS) :]
+        ends = [leg_angles(self.model, pose.qpos, self.side) for pose in (self.start, self.end)]
+        if not any(_pointed(end) for end in ends):
+            far = min(share, 1.0 - share) / STRETCH
+            foot += min(far, 1.0) * (np.radians(POINTED_DEG) - foot)
+        return Passing(angles)
 
     @cached_property
     def _flight(self) -> LegSwing:
         return LegSwing(self.model, self.side, self.start.qpos, self.end.qpos, floor=False)
+
+
+def _pointed(angles: Vector) -> bool:
+    foot = angles[-len(FOOT_JOINTS) :]
+    return bool(np.abs(foot - np.radians(POINTED_DEG)).max() < radians(5.0))
 
 
 def _print(leg: LegTarget) -> Footprint | None:

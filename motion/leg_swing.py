@@ -32,7 +32,7 @@ BRUSH, PASS = 0.05, 0.015
 deep gives up its point and brushes along the floor: from the floor or to it, or passing."""
 EFFORT = 0.03
 """How much of a clearance that is lacking a detour of one radian must make up to be worth it, m."""
-SAMPLES = 11
+SAMPLES = 21
 _BODIES = ("thigh", "shank", "foot")
 _PARTS = ("heel", "ball", "tip")
 
