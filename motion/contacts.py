@@ -62,7 +62,9 @@ def leg_paths(
     late, early = at(SHIFT), at(1.0 - SHIFT)
     window = (0.0, late) if leaves else (early, 1.0)
     return {
-        side: replace(path, leaves_at=late, arrives_at=early, slides=window, yields=True)
+        side: replace(
+            path, leaves_at=late, arrives_at=early, slides=window, yields=True, steps=slides
+        )
         for side, path in paths.items()
     }
 

@@ -22,8 +22,8 @@ from enpointe.models.target import ArmShape, ArmTarget, PoseTarget
 from enpointe.motion.arm_path import ArmPath
 from enpointe.motion.contacts import centre_of_mass, leg_paths
 from enpointe.motion.effort import Effort
+from enpointe.motion.grounding import Contact
 from enpointe.motion.inflection import inflected
-from enpointe.motion.slerp import slerp_poses
 from enpointe.notation import Side
 
 __all__ = ["INTERMEDIATE", "Passage", "solve_passage"]
@@ -43,6 +43,7 @@ class Passage:
         between: The solved poses on the way.
         shares: Where on the way all the poses are, start and end included; (P,), from 0 to 1.
         steps: Whether a foot leaves the floor or comes to it on the way.
+        contact: How a foot stands at a share of the way; None where it does not.
     """
 
     start: KeyPose
@@ -50,6 +51,7 @@ class Passage:
     between: tuple[KeyPose, ...]
     shares: tuple[float, ...]
     steps: bool = False
+    contact: Callable[[Side, float], Contact] = lambda side, share: None
 
     @property
     def poses(self) -> tuple[KeyPose, ...]:
@@ -98,11 +100,11 @@ def solve_passage(
     way.plan_contacts()
     before = 0.0
     for share in way.shares[1:-1]:
-        ahead = np.array([(share - before) / (1.0 - before)])
-        pose = solver.solve(way.at(share), slerp_poses(solver.model, guess, end.qpos, ahead)[0])
+        ahead = (share - before) / (1.0 - before)
+        pose = solver.solve(way.at(share), _towards(guess, end.qpos, ahead))
         guess, before = pose.qpos, share
         between.append(pose)
-    return Passage(start, end, tuple(between), way.shares, way.steps)
+    return Passage(start, end, tuple(between), way.shares, way.steps, way.contact)
 
 
 class _Way:
@@ -132,7 +134,8 @@ class _Way:
             for side in Side
         }
         self._legs = leg_paths(solver.model, start, end, effort)
-        self._moving = com is None and any(path.yields for path in self._legs.values())
+        self._steps = com is None and any(path.steps for path in self._legs.values())
+        self._yields = com is None and any(path.yields for path in self._legs.values())
         self._knots = [(0.0, start), (1.0, end)]
 
     @property
@@ -158,7 +161,7 @@ class _Way:
                 planned[side]["touch"] = self._contact(path.arrives_at, side, path.arriving)
         self._knots.sort(key=lambda knot: knot[0])
         for side, path in self._legs.items():
-            knots = tuple(self._knots) if self._moving else ()
+            knots = tuple(self._knots) if self._yields else ()
             self._legs[side] = replace(
                 path,
                 lift=planned[side].get("lift"),
@@ -177,7 +180,7 @@ class _Way:
         target = self.at(share)
         target = replace(target, legs={**target.legs, side: standing(share)})
         ends = self._first.qpos, self._last.qpos
-        midway = slerp_poses(self._solver.model, *ends, np.array([share]))[0]
+        midway = _towards(*ends, share)
         poses = [self._solver.solve(target, guess) for guess in (*ends, midway)]
         pose = min(poses, key=_strain)
         self._knots.append((share, pose))
@@ -187,6 +190,10 @@ class _Way:
     def steps(self) -> bool:
         """Whether a foot leaves the floor or comes to it while another stays."""
         return self._com is None and any(p.leaves or p.arrives for p in self._legs.values())
+
+    def contact(self, side: Side, share: float) -> Contact:
+        """How a foot stands at a share of the way; None where it does not, or in the air."""
+        return None if self._com is not None else self._legs[side].contact(share)
 
     def at(self, share: float) -> PoseTarget:
         start, end = self._start, self._end
@@ -215,7 +222,7 @@ class _Way:
         )
         if self._com is not None:
             return replace(target, com=self._com(share))
-        if self._moving:
+        if self._steps:
             return replace(target, com=self._passing_weight(share))
         return replace(target, weight=self._weight(share))
 
@@ -230,13 +237,21 @@ class _Way:
         """Where the weight is: over the feet that stay, before others leave and after they come."""
         if len(self._start.support) == 0 or len(self._end.support) == 0:
             return None
-        leaves = [path.leaves_at for path in self._legs.values() if path.leaves]
-        arrives = [path.arrives_at for path in self._legs.values() if path.arrives]
-        low = max(arrives) if arrives else 0.0
-        high = min(leaves) if leaves else 1.0
+        paths = self._legs.values()
+        low = max([path.arrives_at for path in paths if path.arrives], default=0.0)
+        high = min([path.leaves_at for path in paths if path.leaves], default=1.0)
         moved = float(np.clip((share - low) / (high - low), 0.0, 1.0))
         first, last = centroid(self._start.support), centroid(self._end.support)
         return np.asarray((1 - moved) * first + moved * last)
+
+
+def _towards(qpos: Array, end: Array, share: float) -> Array:
+    """A guess on the way to another configuration, (nq,)."""
+    guess = np.asarray((1 - share) * qpos + share * end)
+    if qpos[3:7] @ end[3:7] < 0.0:
+        guess[3:7] = (1 - share) * qpos[3:7] - share * end[3:7]
+    guess[3:7] /= np.linalg.norm(guess[3:7])
+    return guess
 
 
 def _strain(pose: KeyPose) -> tuple[bool, float]:

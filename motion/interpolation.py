@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -14,16 +14,18 @@ from scipy.signal.windows import parzen
 
 from enpointe.errors import MotionError
 from enpointe.models.keypose import KeyPose, KeyPoseSolver
+from enpointe.models.leg_target import OnPointe, Standing
 from enpointe.models.stances import StanceTracker
 from enpointe.models.style import Style
 from enpointe.models.target import pose_target
 from enpointe.motion.effort import Effort, logistic
+from enpointe.motion.grounding import Contact, ground
 from enpointe.motion.inbetween import Passage, solve_passage
 from enpointe.motion.kind import Interpolation
 from enpointe.motion.motion import Event, Motion
 from enpointe.motion.slerp import slerp_poses
 from enpointe.motion.stations import Station, build_stations
-from enpointe.notation import Score
+from enpointe.notation import Score, Side
 
 __all__ = ["Choreography", "interpolate", "solve_key_poses"]
 
@@ -144,6 +146,7 @@ def interpolate(
     qpos = np.empty((count, model.nq))
     qpos[:] = stations[0].pose.qpos
     curves = _Curves(choreography, effort, kind)
+    contacts: dict[Side, list[Contact]] = {side: [None] * count for side in Side}
 
     def timing(phase: Array) -> Array:
         return logistic(phase, effort.time, effort.weight)
@@ -153,12 +156,17 @@ def interpolate(
         phase = (time[inside] - begin) / (end - begin)
         law = stations[i + 1].law
         share = phase if kind is Interpolation.SLERP else law.share(phase, timing)
-        qpos[inside] = curves(i)(share)
+        passage = curves(i)
+        qpos[inside] = passage.curve(share)
         qpos[time > end] = stations[i + 1].pose.qpos
+        for side in Side:
+            for sample, gone in zip(np.flatnonzero(inside), share, strict=True):
+                contacts[side][sample] = passage.contact(side, float(gone))
         if progress is not None:
             progress(i + 1, len(stations) - 1)
     if kind is not Interpolation.SLERP:
-        qpos = _round_corners(model, qpos)
+        _hold(contacts, stations, time, times)
+        qpos = ground(model, time, _round_corners(model, qpos), contacts)
     events = [
         Event(float(t), "key pose", pose.name, float(frame.beat))
         for t, pose, frame in zip(
@@ -170,6 +178,19 @@ def interpolate(
     )
 
 
+@dataclass(frozen=True)
+class _Way:
+    """From one station to the next.
+
+    Attributes:
+        curve: qpos (S, nq) at shares of the way (S,).
+        contact: How a foot stands at a share.
+    """
+
+    curve: Callable[[Array], Array]
+    contact: Callable[[Side, float], Contact]
+
+
 class _Curves:
     """The way between each pair of key poses; a repeated pair is solved once."""
 
@@ -178,24 +199,40 @@ class _Curves:
         self._kind = kind
         direct = Effort(effort.time, effort.weight, 1.0)
         self._effort = effort if kind is Interpolation.EXPRESSIVE else direct
-        self._known: dict[tuple[bytes, bytes], Callable[[Array], Array]] = {}
+        self._known: dict[tuple[bytes, bytes], _Way] = {}
 
-    def __call__(self, index: int) -> Callable[[Array], Array]:
+    def __call__(self, index: int) -> _Way:
         start, end = self._choreography.stations[index : index + 2]
         key = (start.pose.qpos.tobytes(), end.pose.qpos.tobytes())
         if key not in self._known:
             self._known[key] = self._make(start.pose, end.pose, end)
         return self._known[key]
 
-    def _make(self, start: KeyPose, end: KeyPose, station: Station) -> Callable[[Array], Array]:
+    def _make(self, start: KeyPose, end: KeyPose, station: Station) -> _Way:
         solver = self._choreography.solver
         if self._kind is Interpolation.SLERP:
-            return lambda share: slerp_poses(solver.model, start.qpos, end.qpos, share)
+            return _Way(
+                lambda share: slerp_poses(solver.model, start.qpos, end.qpos, share),
+                lambda side, share: None,
+            )
         inflect = self._kind is Interpolation.EXPRESSIVE
         passage: Passage = solve_passage(
             solver, start, end, self._effort, inflect=inflect, com=_flown(station)
         )
-        return passage.curve(solver.model)
+        return _Way(passage.curve(solver.model), passage.contact)
+
+
+def _hold(
+    contacts: dict[Side, list[Contact]], stations: Sequence[Station], time: Array, times: Array
+) -> None:
+    """Before the first station and after the last its feet stand as they do there."""
+    for station, samples in (
+        (stations[0], np.flatnonzero(time <= times[0])),
+        (stations[-1], np.flatnonzero(time >= times[-1])),
+    ):
+        for side, leg in station.pose.target.legs.items():
+            for sample in samples:
+                contacts[side][sample] = leg if isinstance(leg, Standing | OnPointe) else None
 
 
 def _flown(station: Station) -> Callable[[float], Array] | None:

@@ -56,7 +56,8 @@ class LegPath:
         touch: The pose at the moment it arrives: on the floor, the weight not yet on it.
         slides: Shares of the passage between which a foot that stays is moved to its new place.
         yields: Whether heel and knee of a standing leg give way to a passing weight.
-        steps: Whether the weight goes from one foot to the other, so that feet roll off and on.
+        steps: Whether the weight goes with a step or a slide, falling from foot to foot, so that
+            feet roll off and on; otherwise it is over the feet at every moment.
         clock: Of the passage: a foot that steps is timed by the floor under it, not by the quality
             of the movement.
         knots: Shares of the passage and poses that are solved already: between them heel and knee
@@ -120,20 +121,23 @@ class LegPath:
         """What the leg is asked at `share` of the passage, on the floor or `aloft`."""
         if aloft:
             return self._aloft(share)
+        return self.contact(share) or Passing(self._swing.at(self.swing(share)))
+
+    def contact(self, share: float) -> Standing | OnPointe | None:
+        """How the foot stands at `share` of a passage on the floor; None where it does not."""
         if self.stays:
             return self._standing(share)
-        swing = self.swing(share)
-        if swing <= 0.0 and self.leaves:
+        if self.leaves and share <= self.leaves_at:
             return self.leaving(share)
-        if swing >= 1.0 and self.arrives:
+        if self.arrives and share >= self.arrives_at:
             return self.arriving(share)
-        return Passing(self._swing.at(swing))
+        return None
 
-    def leaving(self, share: float) -> LegTarget:
+    def leaving(self, share: float) -> Standing | OnPointe:
         """The stance before, turned about its ball as far as the body has turned by then."""
         return self._pivoted(self.before, share, share)
 
-    def arriving(self, share: float) -> LegTarget:
+    def arriving(self, share: float) -> Standing | OnPointe:
         """The stance after, turned about its ball by what the body has still to turn."""
         return self._pivoted(self.after, share, share - 1.0)
 
@@ -146,21 +150,20 @@ class LegPath:
         ball = self.start.target.figure.ball_forward
         return float(np.linalg.norm(after.point(ball) - before.point(ball)))
 
-    def _pivoted(self, leg: LegTarget, share: float, turned: float) -> LegTarget:
+    def _pivoted(self, leg: LegTarget, share: float, turned: float) -> Standing | OnPointe:
         if isinstance(leg, Standing) and self.yields:
             rise, bend = self._yielding(share, leg.rise, leg.knee_bend)
             leg = replace(leg, yields=True, rise=rise, knee_bend=bend)
-        footprint = _print(leg)
         turn = turned * (self.end.target.facing - self.start.target.facing)
-        if footprint is None or turn == 0.0:
+        assert isinstance(leg, Standing | OnPointe)
+        if turn == 0.0:
             return leg
         ball = self.start.target.figure.ball_forward
-        pivot = footprint.point(ball)
-        foot = Footprint(pivot, footprint.direction + turn)
-        assert isinstance(leg, Standing | OnPointe)
+        pivot = leg.footprint.point(ball)
+        foot = Footprint(pivot, leg.footprint.direction + turn)
         return replace(leg, footprint=Footprint(foot.point(-ball), foot.direction))
 
-    def _standing(self, share: float) -> LegTarget:
+    def _standing(self, share: float) -> Standing | OnPointe:
         footprint = _print(self.before)
         turned = _print(self.after)
         assert footprint is not None and turned is not None

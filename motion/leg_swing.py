@@ -12,12 +12,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from math import log, pi, radians, sin, sqrt
+from math import cos, log, pi, radians, sin, sqrt
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from enpointe.models.leg_target import FOOT_JOINTS, LEG_JOINTS
 from enpointe.notation import Side
@@ -112,7 +111,7 @@ class LegSwing:
 
     def _led(self, share: float, detour: Detour) -> Vector:
         moved = smooth(share)
-        first, last = (_with_twist(leg_angles(self.model, q, self.side)) for q in self._ends)
+        first, last = self._twisted
         angles = (1 - moved) * first + moved * last
         shape = 0.0 if detour == STRAIGHT else detour.shape(share)
         # The hip swings about two axes at 45 degrees: sideways is both, in opposite senses.
@@ -123,6 +122,11 @@ class LegSwing:
             angles[foot] += shape * (np.radians(BRUSHING_DEG) - angles[foot])
         angles[2] -= _twist_of_swing(angles[0], angles[1])
         return angles
+
+    @cached_property
+    def _twisted(self) -> tuple[Vector, Vector]:
+        first, last = (_with_twist(leg_angles(self.model, q, self.side)) for q in self._ends)
+        return first, last
 
     @property
     def _ends(self) -> tuple[Vector, Vector]:
@@ -168,13 +172,31 @@ def _with_twist(angles: Vector) -> Vector:
 def _twist_of_swing(lifted: float, crossed: float) -> float:
     """What the hip's two swings turn the thigh about itself, rad (`thigh_twist` without a turn)."""
     half = sqrt(0.5)
-    axes = np.array([[half, -half, 0.0], [-half, -half, 0.0]])
-    swung = Rotation.from_rotvec(lifted * axes[0]) * Rotation.from_rotvec(crossed * axes[1])
-    x, _, up = swung.as_matrix().T
+    sin_l, cos_l, sin_c, cos_c = sin(lifted), cos(lifted), sin(crossed), cos(crossed)
+    # Columns of the two rotations about (1, -1, 0) / sqrt 2 and (-1, -1, 0) / sqrt 2, multiplied.
+    first, other = np.array([half, -half, 0.0]), np.array([-half, -half, 0.0])
+    up = np.array([0.0, 0.0, 1.0])
+
+    def lift(v: Vector) -> Vector:
+        return cos_l * v + sin_l * _cross(first, v) + (1.0 - cos_l) * (first @ v) * first
+
+    def cross_over(v: Vector) -> Vector:
+        return cos_c * v + sin_c * _cross(other, v) + (1.0 - cos_c) * (other @ v) * other
+
+    x, z = lift(cross_over(np.array([1.0, 0.0, 0.0]))), lift(cross_over(up))
     # Where the shortest swing from hanging to the same direction takes front and left.
-    shortest = Rotation.align_vectors([-up], [[0.0, 0.0, -1.0]])[0]
-    front, left = shortest.apply([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    share = 1.0 / (1.0 + z[2] + 1e-9)
+    axis = _cross(up, z)
+    front, left = (
+        v + _cross(axis, v) + share * _cross(axis, _cross(axis, v)) for v in np.eye(3)[:2]
+    )
     return float(np.arctan2(x @ left, x @ front))
+
+
+def _cross(a: Vector, b: Vector) -> Vector:
+    return np.array(
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    )
 
 
 def smooth(share: float) -> float:
