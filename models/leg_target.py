@@ -59,7 +59,7 @@ class Standing:
         return np.vstack([(1 - risen) * corners[:2] + risen * corners[2:4], corners[2:]])
 
 
-RISEN_DEG = 15.0
+RISEN_DEG = 10.0
 """A foot raised by this much bears on ball and toes alone; on the way there the heel gives its share
 up by degrees, so that the weight need not leap as the heel leaves the floor."""
 

@@ -63,7 +63,12 @@ def leg_paths(
     window = (0.0, late) if leaves else (early, 1.0)
     return {
         side: replace(
-            path, leaves_at=late, arrives_at=early, slides=window, yields=True, steps=slides
+            path,
+            leaves_at=late,
+            arrives_at=early,
+            slides=window,
+            yields=slides or not path.stays,
+            steps=slides,
         )
         for side, path in paths.items()
     }

@@ -44,6 +44,7 @@ class Passage:
         shares: Where on the way all the poses are, start and end included; (P,), from 0 to 1.
         steps: Whether a foot leaves the floor or comes to it on the way.
         contact: How a foot stands at a share of the way; None where it does not.
+        target: What is asked at a share of the way.
     """
 
     start: KeyPose
@@ -52,6 +53,7 @@ class Passage:
     shares: tuple[float, ...]
     steps: bool = False
     contact: Callable[[Side, float], Contact] = lambda side, share: None
+    target: Callable[[float], PoseTarget] | None = None
 
     @property
     def poses(self) -> tuple[KeyPose, ...]:
@@ -104,7 +106,7 @@ def solve_passage(
         pose = solver.solve(way.at(share), _towards(guess, end.qpos, ahead))
         guess, before = pose.qpos, share
         between.append(pose)
-    return Passage(start, end, tuple(between), way.shares, way.steps, way.contact)
+    return Passage(start, end, tuple(between), way.shares, way.steps, way.contact, way.at)
 
 
 class _Way:

@@ -18,16 +18,15 @@ from enpointe.models.leg_target import OnPointe, Standing
 from enpointe.models.stances import StanceTracker
 from enpointe.models.style import Style
 from enpointe.models.target import pose_target
-from enpointe.motion.effort import Effort, logistic
+from enpointe.motion.effort import Effort
 from enpointe.motion.grounding import Contact, ground
-from enpointe.motion.inbetween import Passage, solve_passage
 from enpointe.motion.kind import Interpolation
 from enpointe.motion.motion import Event, Motion
-from enpointe.motion.slerp import slerp_poses
 from enpointe.motion.stations import Station, build_stations
+from enpointe.motion.ways import Ways
 from enpointe.notation import Score, Side
 
-__all__ = ["Choreography", "interpolate", "solve_key_poses"]
+__all__ = ["COUNT_IN", "Choreography", "interpolate", "solve_key_poses", "ways_of"]
 
 Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
@@ -124,6 +123,7 @@ def interpolate(
     effort: Effort,
     kind: Interpolation = Interpolation.EXPRESSIVE,
     *,
+    ways: Ways | None = None,
     progress: Progress | None = None,
 ) -> Motion:
     """Fill in the movement between the key poses.
@@ -132,6 +132,7 @@ def interpolate(
         choreography: The solved score.
         effort: Quality of the movement.
         kind: Expressive, or a baseline.
+        ways: Those of `ways_of` with the same arguments, where they are wanted afterwards.
         progress: Called with (done, all).
 
     Returns:
@@ -145,23 +146,19 @@ def interpolate(
     model = choreography.solver.model
     qpos = np.empty((count, model.nq))
     qpos[:] = stations[0].pose.qpos
-    curves = _Curves(choreography, effort, kind)
+    ways = ways or ways_of(choreography, effort, kind)
     contacts: dict[Side, list[Contact]] = {side: [None] * count for side in Side}
-
-    def timing(phase: Array) -> Array:
-        return logistic(phase, effort.time, effort.weight)
 
     for i, (begin, end) in enumerate(pairwise(times)):
         inside = (time >= begin) & (time <= end)
         phase = (time[inside] - begin) / (end - begin)
-        law = stations[i + 1].law
-        share = phase if kind is Interpolation.SLERP else law.share(phase, timing)
-        passage = curves(i)
-        qpos[inside] = passage.curve(share)
+        share = ways.shares(i, phase)
+        way = ways[i]
+        qpos[inside] = way.curve(share)
         qpos[time > end] = stations[i + 1].pose.qpos
         for side in Side:
             for sample, gone in zip(np.flatnonzero(inside), share, strict=True):
-                contacts[side][sample] = passage.contact(side, float(gone))
+                contacts[side][sample] = way.contact(side, float(gone))
         if progress is not None:
             progress(i + 1, len(stations) - 1)
     if kind is not Interpolation.SLERP:
@@ -178,48 +175,14 @@ def interpolate(
     )
 
 
-@dataclass(frozen=True)
-class _Way:
-    """From one station to the next.
-
-    Attributes:
-        curve: qpos (S, nq) at shares of the way (S,).
-        contact: How a foot stands at a share.
-    """
-
-    curve: Callable[[Array], Array]
-    contact: Callable[[Side, float], Contact]
-
-
-class _Curves:
-    """The way between each pair of key poses; a repeated pair is solved once."""
-
-    def __init__(self, choreography: Choreography, effort: Effort, kind: Interpolation) -> None:
-        self._choreography = choreography
-        self._kind = kind
-        direct = Effort(effort.time, effort.weight, 1.0)
-        self._effort = effort if kind is Interpolation.EXPRESSIVE else direct
-        self._known: dict[tuple[bytes, bytes], _Way] = {}
-
-    def __call__(self, index: int) -> _Way:
-        start, end = self._choreography.stations[index : index + 2]
-        key = (start.pose.qpos.tobytes(), end.pose.qpos.tobytes())
-        if key not in self._known:
-            self._known[key] = self._make(start.pose, end.pose, end)
-        return self._known[key]
-
-    def _make(self, start: KeyPose, end: KeyPose, station: Station) -> _Way:
-        solver = self._choreography.solver
-        if self._kind is Interpolation.SLERP:
-            return _Way(
-                lambda share: slerp_poses(solver.model, start.qpos, end.qpos, share),
-                lambda side, share: None,
-            )
-        inflect = self._kind is Interpolation.EXPRESSIVE
-        passage: Passage = solve_passage(
-            solver, start, end, self._effort, inflect=inflect, com=_flown(station)
-        )
-        return _Way(passage.curve(solver.model), passage.contact)
+def ways_of(
+    choreography: Choreography,
+    effort: Effort,
+    kind: Interpolation = Interpolation.EXPRESSIVE,
+) -> Ways:
+    """The ways between the stations of a choreography, to be solved one by one."""
+    stations = choreography.stations
+    return Ways(choreography.solver, stations, [effort] * (len(stations) - 1), kind)
 
 
 def _hold(
@@ -233,14 +196,6 @@ def _hold(
         for side, leg in station.pose.target.legs.items():
             for sample in samples:
                 contacts[side][sample] = leg if isinstance(leg, Standing | OnPointe) else None
-
-
-def _flown(station: Station) -> Callable[[float], Array] | None:
-    """The centre of mass on the way to a station, for one reached through the air."""
-    if station.flight is None:
-        return None
-    flight, (first, last) = station.flight, station.span
-    return lambda share: flight.at((1 - share) * first + share * last)
 
 
 def _round_corners(model: mujoco.MjModel, qpos: Array) -> Array:
