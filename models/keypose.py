@@ -162,7 +162,6 @@ class PoseProblem:
         ]
         return Certificate(tuple(results))
 
-
     def certify_each(
         self, unknowns: NDArray[np.float64], parameters: NDArray[np.float64]
     ) -> list[Certificate]:

@@ -60,8 +60,8 @@ class Standing:
 
 
 RISEN_DEG = 10.0
-"""A foot raised by this much bears on ball and toes alone; on the way there the heel gives its share
-up by degrees, so that the weight need not leap as the heel leaves the floor."""
+"""A foot raised by this much bears on ball and toes alone; on the way there the heel gives its
+share up by degrees, so that the weight need not leap as the heel leaves the floor."""
 
 
 @dataclass(frozen=True, slots=True)

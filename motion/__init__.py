@@ -15,11 +15,11 @@ if TYPE_CHECKING:
     from enpointe.motion.interpolation import interpolate as interpolate
     from enpointe.motion.interpolation import solve_key_poses as solve_key_poses
     from enpointe.motion.interpolation import ways_of as ways_of
+    from enpointe.motion.keeping import RuleKept as RuleKept
+    from enpointe.motion.keeping import rules_kept as rules_kept
     from enpointe.motion.kind import Interpolation as Interpolation
     from enpointe.motion.motion import Event as Event
     from enpointe.motion.motion import Motion as Motion
-    from enpointe.motion.keeping import RuleKept as RuleKept
-    from enpointe.motion.keeping import rules_kept as rules_kept
     from enpointe.motion.wrist import fit_logistic as fit_logistic
     from enpointe.motion.wrist import wrist_profiles as wrist_profiles
 

@@ -51,9 +51,11 @@ def leg_paths(
     paths = {side: _at_moments(path, clock) for side, path in paths.items()}
     if leaves and arrives:
         arrival, leaving = STEP
-        moments = {"arrives_at": at(arrival), "leaves_at": at(leaving)}
         return {
-            side: replace(path, **moments, yields=True, steps=True) for side, path in paths.items()
+            side: replace(
+                path, arrives_at=at(arrival), leaves_at=at(leaving), yields=True, steps=True
+            )
+            for side, path in paths.items()
         }
     way = centre_of_mass(model, end.qpos) - centre_of_mass(model, start.qpos)
     slides = any(path.travels > SLID for path in paths.values())

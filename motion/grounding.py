@@ -160,7 +160,11 @@ def _correct(
 
 
 def _fade(
-    time: Array, before: Array, after: Array, addresses: Array, standing: NDArray[np.bool_]
+    time: Array,
+    before: Array,
+    after: Array,
+    addresses: NDArray[np.int64],
+    standing: NDArray[np.bool_],
 ) -> None:
     """Let the correction of some coordinates fade where no foot stands that would keep it."""
     change = after[:, addresses] - before[:, addresses]

@@ -171,9 +171,7 @@ class _Way:
                 knots=knots,
             )
 
-    def _contact(
-        self, share: float, side: Side, standing: Callable[[float], LegTarget]
-    ) -> KeyPose:
+    def _contact(self, share: float, side: Side, standing: Callable[[float], LegTarget]) -> KeyPose:
         """The pose at the moment a foot leaves or arrives: still or already in its place.
 
         It is far from both key poses, and the nearest solution to one may be a strained one; the

@@ -18,7 +18,7 @@ from enpointe.models.leg_target import OnPointe, Standing
 from enpointe.models.stances import StanceTracker
 from enpointe.models.style import Style
 from enpointe.models.target import pose_target
-from enpointe.motion.effort import Effort
+from enpointe.motion.effort import Effort, find_effort
 from enpointe.motion.grounding import Contact, ground
 from enpointe.motion.kind import Interpolation
 from enpointe.motion.motion import Event, Motion
@@ -179,10 +179,32 @@ def ways_of(
     choreography: Choreography,
     effort: Effort,
     kind: Interpolation = Interpolation.EXPRESSIVE,
+    *,
+    phrased: bool = False,
 ) -> Ways:
-    """The ways between the stations of a choreography, to be solved one by one."""
+    """The ways between the stations of a choreography, to be solved one by one.
+
+    Args:
+        choreography: The solved score.
+        effort: Quality of the movement.
+        kind: Expressive, or a baseline.
+        phrased: Whether a phrase of the score that is marked with a quality is danced in its own.
+    """
     stations = choreography.stations
-    return Ways(choreography.solver, stations, [effort] * (len(stations) - 1), kind)
+    efforts = [effort] * (len(stations) - 1)
+    if phrased:
+        efforts = [_own_effort(choreography, i, effort) for i in range(1, len(stations))]
+    return Ways(choreography.solver, stations, efforts, kind)
+
+
+def _own_effort(choreography: Choreography, station: int, effort: Effort) -> Effort:
+    """The quality of the way to a station: that of the phrase in which its next frame is."""
+    frame = next(s.frame for s in choreography.stations[station:] if s.frame is not None)
+    beat = choreography.score.frames[frame].beat
+    for phrase in choreography.score.phrases:
+        if phrase.effort is not None and phrase.start < beat <= phrase.end:
+            return find_effort(phrase.effort)[0]
+    return effort
 
 
 def _hold(

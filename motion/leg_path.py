@@ -41,6 +41,9 @@ ROLL_DEG = 35.0
 rolls through, by toes, ball and heel."""
 
 
+EVEN = Clock()
+
+
 @dataclass(frozen=True)
 class LegPath:
     """One leg's way between two key poses.
@@ -75,7 +78,7 @@ class LegPath:
     slides: tuple[float, float] = (0.0, 1.0)
     yields: bool = False
     steps: bool = False
-    clock: Clock = Clock()
+    clock: Clock = EVEN
     knots: tuple[tuple[float, KeyPose], ...] = ()
 
     @property

@@ -1,4 +1,4 @@
-"""The way of a leg through the air: joint by joint from one pose to another, clear of what is there.
+"""The way of a leg through the air: joint by joint from one pose to another, round obstacles.
 
 Hip, knee and foot go from the angles of the one pose to those of the other, slow at both ends, so
 that the way meets both poses; the hip's turn by its twist about the thigh, which is what turnout
@@ -27,8 +27,8 @@ Vector = NDArray[np.float64]
 APART = 0.006
 """Air between legs that pass each other, m."""
 BRUSH, PASS = 0.05, 0.015
-"""A foot on its way that would be deeper in the floor than this, m, makes a detour; one that is less
-deep gives up its point and brushes along the floor: from the floor or to it, or passing."""
+"""A foot on its way that would be deeper in the floor than this, m, makes a detour; one that is
+less deep gives up its point and brushes along the floor: from the floor or to it, or passing."""
 EFFORT = 0.03
 """How much of a clearance that is lacking a detour of one radian must make up to be worth it, m."""
 SAMPLES = 21
@@ -172,18 +172,17 @@ def _with_twist(angles: Vector) -> Vector:
 def _twist_of_swing(lifted: float, crossed: float) -> float:
     """What the hip's two swings turn the thigh about itself, rad (`thigh_twist` without a turn)."""
     half = sqrt(0.5)
-    sin_l, cos_l, sin_c, cos_c = sin(lifted), cos(lifted), sin(crossed), cos(crossed)
-    # Columns of the two rotations about (1, -1, 0) / sqrt 2 and (-1, -1, 0) / sqrt 2, multiplied.
     first, other = np.array([half, -half, 0.0]), np.array([-half, -half, 0.0])
     up = np.array([0.0, 0.0, 1.0])
 
-    def lift(v: Vector) -> Vector:
-        return cos_l * v + sin_l * _cross(first, v) + (1.0 - cos_l) * (first @ v) * first
+    def turned(v: Vector, axis: Vector, angle: float) -> Vector:
+        along = (1.0 - cos(angle)) * (axis @ v) * axis
+        return np.asarray(cos(angle) * v + sin(angle) * _cross(axis, v) + along)
 
-    def cross_over(v: Vector) -> Vector:
-        return cos_c * v + sin_c * _cross(other, v) + (1.0 - cos_c) * (other @ v) * other
+    def swung(v: Vector) -> Vector:
+        return turned(turned(v, other, crossed), first, lifted)
 
-    x, z = lift(cross_over(np.array([1.0, 0.0, 0.0]))), lift(cross_over(up))
+    x, z = swung(np.array([1.0, 0.0, 0.0])), swung(up)
     # Where the shortest swing from hanging to the same direction takes front and left.
     share = 1.0 / (1.0 + z[2] + 1e-9)
     axis = _cross(up, z)

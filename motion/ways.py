@@ -1,4 +1,4 @@
-"""The ways between the stations of a dance: their curves, their contacts and what is asked on them."""
+"""The ways between the stations of a dance: their curves, contacts and what is asked on them."""
 
 from __future__ import annotations
 
