@@ -11,12 +11,13 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+from PIL import Image, ImageDraw
+
 from enpointe.models import KeyPoseSolver, Style, dancer_model, pose_target
 from enpointe.notation import names
 from enpointe.posing import vocabulary_score
 from enpointe.sim.camera import View
 from enpointe.sim.render import open_painter
-from PIL import Image, ImageDraw
 
 FOLDER = Path(__file__).parent / "images"
 WIDTH, HEIGHT, LABEL = 150, 210, 16

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from enpointe.errors import EnpointeError
-from enpointe.figures import PerformanceFigures, PhysicalFigures
+from enpointe.figures import PerformanceFigures, PhysicalFigures, RuleKeptFigures
 from enpointe.notation import Score, load_score
 
 if TYPE_CHECKING:
@@ -132,7 +132,7 @@ class Performance:
         return figures
 
 
-def _rule_figures(kept: RuleKept) -> dict[str, object]:
+def _rule_figures(kept: RuleKept) -> RuleKeptFigures:
     return {
         "rule": kept.rule,
         "unit": kept.unit,

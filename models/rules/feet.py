@@ -15,7 +15,6 @@ from enpointe.models.kinematics import SymbolicBody
 from enpointe.models.leg_target import (
     FOOT_JOINTS,
     POINTED_DEG,
-    InAir,
     OnPointe,
     Passing,
     Standing,
