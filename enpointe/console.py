@@ -7,6 +7,7 @@ import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import rich.console
 from rich.console import RenderableType
@@ -114,12 +115,31 @@ def _flat(figures: Mapping[str, object], prefix: str = "") -> Iterator[tuple[str
             yield from _flat(value, f"{label}.")
         elif name == "poses" and isinstance(value, list):
             for entry in value:
-                broken = [r["rule"] for r in entry["rules"] if not r["held"]]
-                verdict = f"broken: {', '.join(broken)}" if broken else "all rules held"
-                yield entry["name"], f"{verdict} ({entry['solve_ms']:.0f} ms)"
+                yield entry["name"], _verdict(entry)
+            if len(value) == 1:
+                yield from ((rule["rule"], _measured(rule)) for rule in value[0]["rules"])
         elif isinstance(value, float):
             yield label, f"{value:.4g}"
         elif isinstance(value, list):
             yield label, ", ".join(str(v) for v in value) or "none"
         else:
             yield label, "none" if value is None else str(value)
+
+
+def _verdict(entry: Mapping[str, Any]) -> str:
+    """What a solved pose keeps, what it breaks and by how much, and how she cheats."""
+    rules = entry["rules"]
+    broken = [rule for rule in rules if not rule["held"]]
+    kept = f"{len(rules) - len(broken)} of {len(rules)}" if broken else f"all {len(rules)}"
+    lines = [f"{kept} rules held ({entry['solve_ms']:.0f} ms)"]
+    lines += [f"{rule['rule']}: {_measured(rule)}" for rule in broken]
+    if entry["cheats"]:
+        cheats = (f"{c['name']} {c['value']:.0f} {c['unit']}" for c in entry["cheats"])
+        lines.append(f"cheats: {', '.join(cheats)}")
+    return "\n".join(lines)
+
+
+def _measured(rule: Mapping[str, Any]) -> str:
+    verdict = "held" if rule["held"] else "broken"
+    limit = f"at {'least' if rule['at_least'] else 'most'} {rule['bound']:g}"
+    return f"{verdict}, {round(rule['value'], 1) + 0.0:.1f} {rule['unit']} ({limit})"

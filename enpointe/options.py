@@ -35,6 +35,11 @@ class SexName(StrEnum):
     MALE = "male"
 
 
+class DancerName(StrEnum):
+    PERFECT = "perfect"
+    REAL = "real"
+
+
 Score = Annotated[str, typer.Argument(help="A shipped score's name, or a .bmn file.")]
 Effort = Annotated[
     str | None,
@@ -68,15 +73,22 @@ class DancerOptions:
 
 @dataclass(frozen=True)
 class StyledDancerOptions(DancerOptions):
-    """Who dances, and how turned out."""
+    """Who dances, how turned out, and whether with the range of a real hip."""
 
     turnout: Annotated[float, typer.Option(help="Turnout of each leg, degrees.")] = 66.0
+    dancer: Annotated[
+        DancerName,
+        typer.Option(
+            help="perfect keeps her hips square; real has a real hip's range, and says how she"
+            " cheats."
+        ),
+    ] = DancerName.PERFECT
 
     def style(self) -> Style:
         """The amounts of the method."""
         from enpointe.models.style import Style
 
-        return Style(turnout_deg=self.turnout)
+        return Style(turnout_deg=self.turnout, real=self.dancer is DancerName.REAL)
 
 
 @dataclass(frozen=True)

@@ -60,6 +60,10 @@ class Poses:
                         }
                         for r in p.certificate.results
                     ],
+                    "cheats": [
+                        {"name": c.name, "value": c.value, "unit": c.unit}
+                        for c in p.certificate.cheats
+                    ],
                     "solve_ms": p.solve_ms,
                     "recognised_as": recognise(self.model, p.qpos).name,
                 }

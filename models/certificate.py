@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["Certificate", "RuleResult"]
+__all__ = ["Certificate", "Cheat", "RuleResult"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,14 +33,34 @@ class RuleResult:
 
 
 @dataclass(frozen=True, slots=True)
+class Cheat:
+    """What a real dancer lends to a position beyond what its rules ask (Neagle 2005 §4.8).
+
+    Attributes:
+        name: In words, with its sense.
+        value: How much, positive.
+        unit: "deg".
+    """
+
+    name: str
+    value: float
+    unit: str
+
+    def __str__(self) -> str:
+        return f"{self.name} {self.value:.0f} {self.unit}"
+
+
+@dataclass(frozen=True, slots=True)
 class Certificate:
     """The rules of one pose.
 
     Attributes:
         results: One for each rule that applies.
+        cheats: Of a real dancer, greatest first; the perfect one needs none.
     """
 
     results: tuple[RuleResult, ...]
+    cheats: tuple[Cheat, ...] = ()
 
     @property
     def held(self) -> bool:

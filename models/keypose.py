@@ -13,7 +13,8 @@ in the root's position and rotation vector and the hinge angles (nv unknowns).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from time import perf_counter
 from typing import Any
 
@@ -25,6 +26,7 @@ from scipy.spatial.transform import Rotation
 
 from enpointe.errors import PoseError
 from enpointe.models.certificate import Certificate, RuleResult
+from enpointe.models.cheats import cheats_of
 from enpointe.models.figure import Figure
 from enpointe.models.kinematics import SymbolicBody, qpos_from_tangent
 from enpointe.models.rules import Kind, Rule, Symbols, rules_for
@@ -35,8 +37,11 @@ __all__ = ["KeyPose", "KeyPoseSolver", "PoseProblem"]
 
 _RANGE_MARGIN = np.radians(0.5)
 _POSTURE_WEIGHT = 1e-3
-FOLD = 1.2
-"""A pose with a joint farther than this from a guess near by is another fold of the limbs, rad."""
+_CONTINUITY = 0.1
+"""What a pose costs more for each rad^2 that its hinges are from the guess. Another fold of the
+limbs, a few rad away in some joints, has to be better by about what 10 degrees of pelvis cost."""
+_NEAR = 0.6
+"""A pose none of whose hinges is farther from the guess than this is on the same fold, rad."""
 _IPOPT: dict[str, Any] = {
     "ipopt.print_level": 0,
     "ipopt.sb": "yes",
@@ -60,16 +65,16 @@ class KeyPose:
         qpos: (nq,), the dancer facing x.
         certificate: Each rule, held or broken.
         target: What was asked.
-        solve_ms: Wall time of seed and solution.
         iterations: Of the interior-point method.
+        solve_ms: Wall time of seed and solution, of every attempt.
     """
 
     name: str
     qpos: NDArray[np.float64]
     certificate: Certificate
     target: PoseTarget
-    solve_ms: float
     iterations: int
+    solve_ms: float = 0.0
 
     @property
     def held(self) -> bool:
@@ -115,6 +120,7 @@ class PoseProblem:
         self._measure = ca.Function(
             "rules", [self.unknowns, parameters], [ca.vertcat(*residuals.values())]
         )
+        self._cost = ca.Function("cost", [self.unknowns, parameters], [self.cost])
         self._slices = _slices([r.numel() for r in residuals.values()])
         problem: dict[str, ca.SX] = {
             "x": self.unknowns,
@@ -150,6 +156,10 @@ class PoseProblem:
         )
         return np.asarray(solution["x"]).ravel(), int(self._solver.stats()["iter_count"])
 
+    def cost_at(self, unknowns: NDArray[np.float64], parameters: NDArray[np.float64]) -> float:
+        """What the rules that she prefers to keep cost at a solution."""
+        return float(self._cost(unknowns, parameters))
+
     def certify(
         self, unknowns: NDArray[np.float64], parameters: NDArray[np.float64]
     ) -> Certificate:
@@ -160,6 +170,17 @@ class PoseProblem:
             for rule, part in zip(self.rules, self._slices, strict=True)
         ]
         return Certificate(tuple(results))
+
+    def certify_each(
+        self, unknowns: NDArray[np.float64], parameters: NDArray[np.float64]
+    ) -> list[Certificate]:
+        """Measure every rule at many poses at once: unknowns (N, nv) and parameters (N, P)."""
+        residuals = np.asarray(self._measure(unknowns.T, parameters.T)).T
+        parts = list(zip(self.rules, self._slices, strict=True))
+        return [
+            Certificate(tuple(_result(rule, residual[part]) for rule, part in parts))
+            for residual in residuals
+        ]
 
 
 class KeyPoseSolver:
@@ -192,8 +213,11 @@ class KeyPoseSolver:
 
         Args:
             target: What the score asks.
-            guess: A configuration (nq,) nearby, such as the pose before. Without one, or where no
-                legal pose is found from it, differential IK leads there from standing.
+            guess: A configuration (nq,) nearby, such as the pose before. Without one differential
+                IK leads there from standing. Where the pose found from a guess is
+                illegal, or breaks a rule far away from it, differential IK from the guess and from
+                standing are tried as well, and of the legal poses the one is taken that is cheapest
+                and nearest to the guess.
 
         Returns:
             The pose and its certificate, which says itself whether the rules hold.
@@ -201,34 +225,74 @@ class KeyPoseSolver:
         Raises:
             PoseError: The solver produced no finite pose.
         """
-        if guess is not None:
-            near = self._solve_from(target, guess)
-            if near.certificate.legal:
-                return near
-            cold = self._solve_from(target, None)
-            folded = float(np.abs(cold.qpos[7:] - guess[7:]).max()) > FOLD
-            return cold if cold.certificate.legal and not folded else near
-        return self._solve_from(target, None)
+        self.problem(target)
+        start = perf_counter()
+        found = self._found(target, guess)
+        return replace(found, solve_ms=1e3 * (perf_counter() - start))
 
-    def _solve_from(self, target: PoseTarget, guess: NDArray[np.float64] | None) -> KeyPose:
+    def _found(self, target: PoseTarget, guess: NDArray[np.float64] | None) -> KeyPose:
+        if guess is None:
+            return self._solve_from(target, differential_ik(self.model, target))
+        tried: list[KeyPose] = []
+        for seed in self._seeds(target, guess):
+            found = self._solve_from(target, seed)
+            tried.append(found)
+            near = float(np.abs(found.qpos[7:] - guess[7:]).max()) < _NEAR
+            if found.held or (near and found.certificate.legal):
+                break
+        return min(tried, key=lambda pose: self._merit(pose, guess))
+
+    def _seeds(
+        self, target: PoseTarget, guess: NDArray[np.float64]
+    ) -> Iterator[NDArray[np.float64]]:
+        """The guess, where differential IK leads from it, and where it leads from standing."""
+        yield guess
+        yield differential_ik(self.model, target, start=guess)
+        yield differential_ik(self.model, target)
+
+    def _merit(self, pose: KeyPose, guess: NDArray[np.float64]) -> tuple[bool, float]:
+        """Less is better: legal before illegal, then cheap and near the guess."""
+        problem = self.problem(pose.target)
+        unknowns = _tangent(pose.qpos, pose.target.facing)
+        away = float(np.sum((pose.qpos[7:] - guess[7:]) ** 2))
+        cost = problem.cost_at(unknowns, problem.parameters(pose.target))
+        return not pose.certificate.legal, cost + _CONTINUITY * away
+
+    def certify(
+        self, targets: Sequence[PoseTarget], qpos: NDArray[np.float64]
+    ) -> tuple[Certificate, ...]:
+        """Measure the rules at configurations (N, nq), each against its own target."""
+        found: dict[int, Certificate] = {}
+        alike: dict[object, list[int]] = {}
+        for index, target in enumerate(targets):
+            alike.setdefault(target.structure, []).append(index)
+        for indices in alike.values():
+            problem = self.problem(targets[indices[0]])
+            unknowns = np.array([_tangent(qpos[i], targets[i].facing) for i in indices])
+            parameters = np.array([problem.parameters(targets[i]) for i in indices])
+            certificates = problem.certify_each(unknowns, parameters)
+            found |= dict(zip(indices, certificates, strict=True))
+        return tuple(found[i] for i in range(len(targets)))
+
+    def _solve_from(self, target: PoseTarget, seed: NDArray[np.float64]) -> KeyPose:
         problem = self.problem(target)
         parameters = problem.parameters(target)
-        start = perf_counter()
-        seed = differential_ik(self.model, target) if guess is None else guess
         unknowns, iterations = problem.solve(
             _tangent(seed, target.facing), parameters, self._lower, self._upper
         )
-        elapsed = 1e3 * (perf_counter() - start)
         if not np.all(np.isfinite(unknowns)):
             raise PoseError(
                 f"{target.name}: no pose was found; the signs may contradict each other"
             )
+        qpos = _qpos(unknowns, target.facing)
+        certificate = problem.certify(unknowns, parameters)
+        if target.real:
+            certificate = replace(certificate, cheats=cheats_of(self.model, qpos, target))
         return KeyPose(
             name=target.name,
-            qpos=_qpos(unknowns, target.facing),
-            certificate=problem.certify(unknowns, parameters),
+            qpos=qpos,
+            certificate=certificate,
             target=target,
-            solve_ms=elapsed,
             iterations=iterations,
         )
 
@@ -259,7 +323,7 @@ def _slices(lengths: list[int]) -> list[slice]:
 
 def _result(rule: Rule, residual: NDArray[np.float64]) -> RuleResult:
     scaled = residual * rule.per_unit
-    if rule.kind is Kind.AT_LEAST:
+    if rule.kind.is_margin:
         value = float(scaled.min())
         held = value >= rule.bound - 1e-3
     else:
@@ -272,6 +336,6 @@ def _result(rule: Rule, residual: NDArray[np.float64]) -> RuleResult:
         rule.bound,
         bool(held),
         rule.source,
-        at_least=rule.kind is Kind.AT_LEAST,
-        must=rule.kind in (Kind.EQUAL, Kind.AT_LEAST),
+        at_least=rule.kind.is_margin,
+        must=rule.kind.is_constraint,
     )

@@ -17,7 +17,15 @@ from numpy.typing import NDArray
 
 from enpointe.errors import ModelError
 
-__all__ = ["Frame3", "Kinematics", "SymbolicBody", "qpos_from_tangent", "rotation_of"]
+__all__ = [
+    "Capsule",
+    "Frame3",
+    "Kinematics",
+    "SymbolicBody",
+    "angle_over_sine",
+    "qpos_from_tangent",
+    "rotation_of",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +42,15 @@ class Frame3:
     def to_local(self, point: ca.SX) -> ca.SX:
         """A point of the world, in this frame."""
         return self.rotation.T @ (point - self.position)
+
+
+@dataclass(frozen=True, slots=True)
+class Capsule:
+    """A symbolic capsule in the world: the ends of its axis, (3, 1), and its radius, m."""
+
+    start: ca.SX
+    end: ca.SX
+    radius: float
 
 
 class SymbolicBody:
@@ -58,6 +75,27 @@ class SymbolicBody:
         index = _lookup(self.model, mujoco.mjtObj.mjOBJ_SITE, name)
         frame = self._frames[self.model.site_bodyid[index]]
         return frame.point(self.model.site_pos[index])
+
+    def capsule(self, geom: str) -> Capsule:
+        """The capsule geom of this name. Raises `ModelError` for no such geom or another shape."""
+        index = _lookup(self.model, mujoco.mjtObj.mjOBJ_GEOM, geom)
+        if self.model.geom_type[index] != mujoco.mjtGeom.mjGEOM_CAPSULE:
+            raise ModelError(f"the geom {geom!r} is no capsule")
+        frame = self._frames[int(self.model.geom_bodyid[index])]
+        radius, half, _ = self.model.geom_size[index]
+        matrix = np.zeros(9)
+        mujoco.mju_quat2Mat(matrix, self.model.geom_quat[index])
+        reach = half * matrix.reshape(3, 3)[:, 2]
+        centre = self.model.geom_pos[index]
+        return Capsule(frame.point(centre - reach), frame.point(centre + reach), float(radius))
+
+    def lowest(self, geom: str) -> ca.SX:
+        """Height of the lowest point of a sphere geom, m. Raises `ModelError` as `capsule`."""
+        index = _lookup(self.model, mujoco.mjtObj.mjOBJ_GEOM, geom)
+        if self.model.geom_type[index] != mujoco.mjtGeom.mjGEOM_SPHERE:
+            raise ModelError(f"the geom {geom!r} is no sphere")
+        frame = self._frames[int(self.model.geom_bodyid[index])]
+        return frame.point(self.model.geom_pos[index])[2] - float(self.model.geom_size[index, 0])
 
     def joint(self, name: str) -> ca.SX:
         """The scalar coordinate of the hinge or slide `name`, rad or m."""
@@ -132,6 +170,15 @@ def qpos_from_tangent(model: mujoco.MjModel, tangent: ca.SX, facing: ca.SX | flo
     c, s = ca.cos(facing / 2), ca.sin(facing / 2)
     quaternion = ca.vertcat(c * w - s * z, c * x - s * y, c * y + s * x, c * z + s * w)
     return ca.vertcat(tangent[:3], quaternion, tangent[6:])
+
+
+def angle_over_sine(square_of_sine: ca.SX, cosine: ca.SX) -> ca.SX:
+    """a / sin a for an angle a in [0, pi), 1 at 0: what makes a cross product a rotation vector.
+
+    The sine's square is padded by 1e-6, so that derivatives stay exact at 0.
+    """
+    sine = ca.sqrt(square_of_sine + 1e-6)
+    return ca.atan2(sine, cosine) / sine
 
 
 def rotation_of(quaternion: ca.SX) -> ca.SX:

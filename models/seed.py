@@ -14,7 +14,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from enpointe.models.leg_target import InAir, OnPointe, Standing, ToeOnFloor, ToeOnLeg
+from enpointe.models.leg_target import (
+    LEG_JOINTS,
+    InAir,
+    OnPointe,
+    Passing,
+    Standing,
+    ToeOnFloor,
+    ToeOnLeg,
+)
 from enpointe.models.rules.balance import centroid
 from enpointe.models.target import ArmShape, PoseTarget, turn_tilt_bend
 from enpointe.notation import Side
@@ -28,19 +36,25 @@ _HINGES = ("turn", "tilt", "bend")
 
 
 def differential_ik(
-    model: mujoco.MjModel, target: PoseTarget, *, steps: int = SEED_STEPS
+    model: mujoco.MjModel,
+    target: PoseTarget,
+    *,
+    steps: int = SEED_STEPS,
+    start: NDArray[np.float64] | None = None,
 ) -> NDArray[np.float64]:
-    """Steer the standing dancer towards a target.
+    """Steer the dancer towards a target.
 
     Args:
         model: The dancer.
         target: The pose.
         steps: Number of velocity steps, each one QP (daqp).
+        start: A configuration (nq,) to begin at, within the joint ranges; standing if None.
 
     Returns:
         A configuration (nq,) near the target, inside the joint ranges.
     """
-    configuration = mink.Configuration(model, q=starting_pose(model, target))
+    begin = starting_pose(model, target) if start is None else start
+    configuration = mink.Configuration(model, q=begin)
     tasks = ik_tasks(model, target)
     limits = [mink.ConfigurationLimit(model)]
     for _ in range(steps):
@@ -90,6 +104,8 @@ def _leg_angles(target: PoseTarget, side: Side) -> dict[str, float]:
         }
     if isinstance(leg, OnPointe):
         return {"hip_turn": 0.85, "knee_bend": 0.02, "ankle_point": 1.4, "toe_raise": -0.14}
+    if isinstance(leg, Passing):
+        return dict(zip(LEG_JOINTS, leg.angles, strict=True))
     pointed = {"hip_turn": 0.85, "ankle_point": 1.3, "toe_raise": -0.26}
     if isinstance(leg, ToeOnFloor):
         return {**pointed, "hip_raise": 0.4 * leg.ahead, "hip_cross": 0.4 * leg.ahead - 0.3}
@@ -152,6 +168,8 @@ def _leg_tasks(model: mujoco.MjModel, target: PoseTarget, side: Side) -> list[mi
     if isinstance(leg, OnPointe):
         tip = leg.footprint.point(figure.ball_forward + figure.toe_length)
         return [_world_task(f"{side}_toe_tip", np.array([*tip, 0.0]), 10.0)]
+    if isinstance(leg, Passing):
+        return []
     if isinstance(leg, InAir):
         tasks: list[mink.Task] = [_point_task(f"{side}_ankle", "pelvis", leg.ankle, 10.0)]
         if leg.knee is not None:

@@ -28,9 +28,11 @@ class Style:
             supination of adults (AAOS).
         demi_plie_deg: Bend of the knee in a demi-plié; the heel stays down. No source prints it;
             ours leaves the ankle at 27 degrees of its 30 (Russell et al. 2010).
+        demi_plie_in_fourth_deg: The same with the feet one before the other, where the back ankle
+            is at the end of its range; ours.
         grand_plie_deg: Bend of the knee in a grand plié (135 +- 4.6, Fotaki 2024, 20 dancers), less
             what keeps the thighs level.
-        grand_plie_rise_deg: How far the heels rise in it, but in second and open fourth.
+        grand_plie_rise_deg: How far the heels rise in it, but in second.
         real: A real dancer, whose hip has its range and who tips and opens the pelvis for a high
             leg; the perfect dancer keeps it square (Neagle 2005 §4.8).
     """
@@ -41,6 +43,7 @@ class Style:
     wrist_break_deg: float = 8.0
     palm_deg: float = 80.0
     demi_plie_deg: float = 58.0
+    demi_plie_in_fourth_deg: float = 50.0
     grand_plie_deg: float = 122.0
     grand_plie_rise_deg: float = 38.0
     real: bool = False

@@ -2,7 +2,15 @@
 
 from __future__ import annotations
 
-from enpointe.models.leg_target import InAir, LegTarget, OnPointe, Standing, ToeOnFloor, ToeOnLeg
+from enpointe.models.leg_target import (
+    InAir,
+    LegTarget,
+    OnPointe,
+    Passing,
+    Standing,
+    ToeOnFloor,
+    ToeOnLeg,
+)
 from enpointe.models.rules.arms import (
     ElbowOnItsSign,
     ElbowOnTheSlope,
@@ -18,11 +26,13 @@ from enpointe.models.rules.balance import (
     CentredWeight,
     ComInFlight,
     ComOverSupport,
+    WeightOnItsWay,
     WeightOverTheFoot,
 )
 from enpointe.models.rules.base import Kind as Kind
 from enpointe.models.rules.base import Rule as Rule
 from enpointe.models.rules.base import Symbols as Symbols
+from enpointe.models.rules.clearance import ArmsClearOfLegs, ArmsClearOfTheBody, LegsApart
 from enpointe.models.rules.feet import (
     BallOnItsMark,
     FeetTurnedOutAlike,
@@ -30,6 +40,8 @@ from enpointe.models.rules.feet import (
     FootOnItsWayToPoint,
     FootRaised,
     FootTurnout,
+    FootYields,
+    HeelAboveTheFloor,
     OnTheTip,
     PointedFoot,
     ToesFlat,
@@ -38,17 +50,20 @@ from enpointe.models.rules.feet import (
 from enpointe.models.rules.hip import REAL_ROTATION_DEG, HipExtension, HipRotation
 from enpointe.models.rules.legs import (
     FootOnItsSign,
-    FootOnItsWay,
     KneeBend,
     KneeOnItsSign,
     KneeOverToe,
+    KneeYields,
+    LegOnItsWay,
     LegTurnedOut,
     StretchedKnee,
     ToeAtTheLeg,
+    ToeAway,
     ToeOnTheFloor,
 )
 from enpointe.models.rules.stance import (
     BodyAsWritten,
+    BodyLent,
     HeadAsWritten,
     PelvisAsWritten,
     PelvisLent,
@@ -61,7 +76,7 @@ __all__ = ["Kind", "Rule", "Symbols", "rules_for"]
 
 def rules_for(target: PoseTarget) -> tuple[Rule, ...]:
     """The rules that apply to a pose of this structure."""
-    rules: list[Rule] = [HeadAsWritten(), BodyAsWritten(), _pelvis_rule(target)]
+    rules: list[Rule] = [HeadAsWritten(), *_trunk_rules(target)]
     for side in Side:
         rules += _arm_rules(target.arms[side].shape, side)
         rules += _leg_rules(target.legs[side], side)
@@ -69,19 +84,22 @@ def rules_for(target: PoseTarget) -> tuple[Rule, ...]:
             rules += [HipRotation(side, REAL_ROTATION_DEG), HipExtension(side)]
         else:
             rules.append(HipRotation(side))
+    bearing = sum(isinstance(leg, Standing | OnPointe) for leg in target.legs.values())
     if target.com is not None:
-        rules.append(ComInFlight())
+        rules.append(WeightOnItsWay() if bearing else ComInFlight())
     else:
-        bearing = sum(isinstance(leg, Standing | OnPointe) for leg in target.legs.values())
         rules += [ComOverSupport(), CentredWeight() if bearing > 1 else WeightOverTheFoot()]
-    if all(isinstance(leg, Standing) for leg in target.legs.values()):
+    if all(isinstance(leg, Standing) and not leg.yields for leg in target.legs.values()):
         rules.append(FeetTurnedOutAlike())
-    return tuple(rules)
+    lifted = tuple(side for side, leg in target.legs.items() if isinstance(leg, InAir | ToeOnLeg))
+    return (*rules, LegsApart(), ArmsClearOfLegs(lifted), ArmsClearOfTheBody())
 
 
-def _pelvis_rule(target: PoseTarget) -> Rule:
+def _trunk_rules(target: PoseTarget) -> list[Rule]:
     working = any(not isinstance(leg, Standing | OnPointe) for leg in target.legs.values())
-    return PelvisLent() if target.real and working else PelvisAsWritten()
+    if target.real and working:
+        return [BodyLent(), PelvisLent()]
+    return [BodyAsWritten(), PelvisAsWritten()]
 
 
 def _arm_rules(shape: ArmShape, side: Side) -> list[Rule]:
@@ -105,24 +123,19 @@ def _leg_rules(leg: LegTarget, side: Side) -> list[Rule]:
             BallOnItsMark(side),
             ToesFlat(side),
             FootTurnout(side),
-            FootRaised(side),
-            KneeBend(side),
             TurnoutAtTheHip(side),
         ]
+        if leg.yields:
+            return [*rules, FootYields(side), KneeYields(side), HeelAboveTheFloor(side)]
+        rules += [FootRaised(side), KneeBend(side)]
         return [*rules, KneeOverToe(side)] if leg.knee_bend > 0 else rules
     if isinstance(leg, OnPointe):
         return [OnTheTip(side), FootTurnout(side), KneeBend(side), TurnoutAtTheHip(side)]
-    if isinstance(leg, InAir) and leg.passing:
-        return [
-            FootOnItsWay(side),
-            KneeOnItsSign(side),
-            FootOnItsWayToPoint(side),
-            FootAboveTheFloor(side),
-            LegTurnedOut(side),
-        ]
+    if isinstance(leg, Passing):
+        return [LegOnItsWay(side), FootOnItsWayToPoint(side), FootAboveTheFloor(side)]
     rules = [PointedFoot(side), LegTurnedOut(side)]
     if isinstance(leg, ToeOnFloor):
-        return [ToeOnTheFloor(side), *rules]
+        return [ToeOnTheFloor(side), ToeAway(side), *rules]
     if isinstance(leg, ToeOnLeg):
         return [ToeAtTheLeg(side, leg.site), *rules]
     assert isinstance(leg, InAir)

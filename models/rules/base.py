@@ -29,6 +29,18 @@ class Kind(Enum):
     """A cost: the residual is small."""
     CHECK = "check"
     """Not given to the solver, since other rules imply it; certified all the same."""
+    CHECK_AT_LEAST = "check at least"
+    """A margin that is not given to the solver, since other rules leave it no freedom to act."""
+
+    @property
+    def is_margin(self) -> bool:
+        """Whether the residual has a floor rather than a ceiling."""
+        return self in (Kind.AT_LEAST, Kind.CHECK_AT_LEAST)
+
+    @property
+    def is_constraint(self) -> bool:
+        """Whether the solver must keep it."""
+        return self in (Kind.EQUAL, Kind.AT_LEAST)
 
 
 class Symbols:

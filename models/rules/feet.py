@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from math import cos, radians, sin
 from typing import ClassVar
 
@@ -11,7 +12,14 @@ from numpy.typing import NDArray
 
 from enpointe.models.foot_positions import Footprint
 from enpointe.models.kinematics import SymbolicBody
-from enpointe.models.leg_target import FOOT_JOINTS, POINTED_DEG, InAir, OnPointe, Standing
+from enpointe.models.leg_target import (
+    FOOT_JOINTS,
+    POINTED_DEG,
+    OnPointe,
+    Passing,
+    Standing,
+)
+from enpointe.models.rules.balance import centroid
 from enpointe.models.rules.base import Kind, Rule, SidedRule, Symbols
 from enpointe.models.target import PoseTarget
 from enpointe.notation import Side
@@ -23,6 +31,8 @@ __all__ = [
     "FootOnItsWayToPoint",
     "FootRaised",
     "FootTurnout",
+    "FootYields",
+    "HeelAboveTheFloor",
     "OnTheTip",
     "PointedFoot",
     "ToesFlat",
@@ -97,6 +107,15 @@ class FootRaised(_FootRule):
         return {f"{self.side}_rise": np.array(leg.rise)}
 
 
+class FootYields(FootRaised):
+    """The heel of a foot that weight is coming to or leaving rises as the weight needs it."""
+
+    name: ClassVar[str] = "heel that yields"
+    bound: ClassVar[float] = 60.0
+    kind: ClassVar[Kind] = Kind.PREFER
+    weight: ClassVar[float] = 5.0
+
+
 class FootTurnout(_FootRule):
     """The foot points where the position asks: its axis crossed with the print's is 0.
 
@@ -121,7 +140,11 @@ class FootTurnout(_FootRule):
 
 
 class OnTheTip(_FootRule):
-    """The tip of the toes stands on its mark and the toes point straight down: pointe."""
+    """The tip of the toes stands on its mark and the toes carry on the line of the leg: pointe.
+
+    They stand upright under a bent knee or a leg alone, and lean with straight legs that open to
+    both feet, as far as the line from hip to tip does.
+    """
 
     name: ClassVar[str] = "on the tip of the toes"
     unit: ClassVar[str] = "mm"
@@ -134,16 +157,25 @@ class OnTheTip(_FootRule):
         toes = body.frame(f"{self.side}_toe").rotation[:, 0]
         place = tip - ca.vertcat(symbols(f"{self.side}_tip", 2), 0)
         curl = body.joint(f"{self.side}_toe_raise") + radians(POINTE_TOES_DEG)
-        return ca.vertcat(place, toes[:2], curl)
+        return ca.vertcat(place, toes[:2] - symbols(f"{self.side}_lean", 2), curl)
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
-        figure = target.figure
+        side, figure = Side(self.side), target.figure
+        leg = target.legs[side]
         tip = self._footprint(target).point(figure.ball_forward + figure.toe_length)
-        return {f"{self.side}_tip": tip}
+        lean = np.zeros(2)
+        both = all(isinstance(other, Standing | OnPointe) for other in target.legs.values())
+        if both and isinstance(leg, OnPointe) and not leg.knee_bend:
+            c, s = cos(target.facing), sin(target.facing)
+            hip = float(figure.hips[side][1]) * np.array([-s, c])
+            lean = (tip - centroid(target.support) - hip) / (
+                figure.straight_leg + figure.foot_length
+            )
+        return {f"{self.side}_tip": tip, f"{self.side}_lean": lean}
 
 
-POINTE_TOES_DEG = 8.0
-"""What the toes add to the ankle so that the line from shin to toe is straight."""
+POINTE_TOES_DEG = -POINTED_DEG[-1]
+"""What the toes add to the ankle so that the line from shin to toe is straight, as in the air."""
 
 
 class PointedFoot(SidedRule):
@@ -161,8 +193,8 @@ class PointedFoot(SidedRule):
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
         leg = target.legs[Side(self.side)]
-        passing = leg.foot if isinstance(leg, InAir) else None
-        return {f"{self.side}_foot_angles": np.radians(POINTED_DEG) if passing is None else passing}
+        angles = leg.angles[4:] if isinstance(leg, Passing) else np.radians(POINTED_DEG)
+        return {f"{self.side}_foot_angles": angles}
 
 
 class FootOnItsWayToPoint(PointedFoot):
@@ -175,20 +207,32 @@ class FootOnItsWayToPoint(PointedFoot):
 
 
 class FootAboveTheFloor(SidedRule):
-    """No part of a passing foot goes through the floor: heel, ball and toe tip at z >= 0."""
+    """No part of a passing foot goes through the floor: z >= 0 under heel, ball and toe tip.
+
+    Under both edges of each, as the compiled soles have them: a foot on its way rolls.
+    """
 
     name: ClassVar[str] = "foot above the floor"
     unit: ClassVar[str] = "mm"
     bound: ClassVar[float] = 0.0
     kind: ClassVar[Kind] = Kind.AT_LEAST
     source: ClassVar[str] = "Neagle 2005 §4.5.3 e (toes below the floor)"
+    parts: ClassVar[tuple[str, ...]] = ("heel", "ball", "tip")
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
-        points = ("heel", "ball", "toe_tip")
-        return ca.vertcat(*(body.site(f"{self.side}_{p}")[2] for p in points))
+        spheres = product(self.parts, ("inner", "outer"))
+        return ca.vertcat(*(body.lowest(f"{self.side}_{p}_{edge}") for p, edge in spheres))
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
         return {}
+
+
+class HeelAboveTheFloor(FootAboveTheFloor):
+    """The heel of a foot whose ball stays on its mark does not go through the floor."""
+
+    name: ClassVar[str] = "heel above the floor"
+    bound: ClassVar[float] = -0.5
+    parts: ClassVar[tuple[str, ...]] = ("heel",)
 
 
 class TurnoutAtTheHip(SidedRule):

@@ -9,11 +9,11 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from enpointe.models.kinematics import SymbolicBody
+from enpointe.models.kinematics import SymbolicBody, angle_over_sine
 from enpointe.models.rules.base import Kind, SidedRule, Symbols
 from enpointe.models.target import PoseTarget
 
-__all__ = ["HipExtension", "HipRotation", "thigh_twist"]
+__all__ = ["HipExtension", "HipRotation", "thigh_swing", "thigh_twist"]
 
 PERFECT_ROTATION_DEG = 62.0
 """Outward rotation of the perfect dancer's hip: an elite's 52 on each side (Hamilton 1992: 104 in
@@ -22,12 +22,23 @@ not."""
 REAL_ROTATION_DEG = 54.0
 """The same from 50.2 passive degrees (Australian Ballet, n = 45) less what is never used up."""
 EXTENSION_DEG = 40.0
-"""Normal hips go 20-30 deg behind the body (AAOS); a turned-out dancer's somewhat farther."""
+"""Normal hips go 10-30 deg behind the body (AAOS; Clippinger, Dance Anatomy and Kinesiology, 2007,
+says 10-15, and of elite dancers two or three times that)."""
+
+
+SLACK_DEG = 40.0
+"""How much more a thigh turns out that is level in front, and half as much to the side: the
+ligaments before the hip slacken as it bends (Kapandji, The Physiology of the Joints), and whoever
+sits cross-legged turns out much more. The amount is ours; it lets a grand plié open as it does."""
 
 
 @dataclass(frozen=True)
 class HipRotation(SidedRule):
-    """The thigh turns out about itself no farther than the hip lets it: limit - twist >= 0."""
+    """The thigh turns out about itself no farther than the hip lets it: limit + slack >= twist.
+
+    The slack grows as the thigh is lifted, slack = s (1 - cos a)(1 + f) / 2, with a the angle from
+    hanging and f how far forward the thigh points, from -1 to 1: none behind.
+    """
 
     name: ClassVar[str] = "hip rotation within range"
     unit: ClassVar[str] = "deg"
@@ -37,31 +48,49 @@ class HipRotation(SidedRule):
     limit_deg: float = PERFECT_ROTATION_DEG
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
-        return float(np.radians(self.limit_deg)) - thigh_twist(body, self.side)
+        up = _thigh(body, self.side)[:, 2]
+        slack = float(np.radians(SLACK_DEG)) * (1 - up[2]) * (1 - up[0]) / 2
+        return float(np.radians(self.limit_deg)) + slack - thigh_twist(body, self.side)
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
         return {}
 
 
 class HipExtension(SidedRule):
-    """The thigh goes behind the pelvis by `EXTENSION_DEG` at most: sin(e) + d_x >= 0.
+    """The thigh swings behind the pelvis by `EXTENSION_DEG` at most, less where it crosses over.
 
-    d is the thigh's direction in the pelvis' frame. The hinges' own ranges can't say this: a swing
-    of three hinges shares its angle between them.
+    limit - e >= 0 and limit - e - a >= 0, with e and a the extension and adduction of
+    `thigh_swing`: the ligament before the hip tightens with both. The extension grows with the leg
+    all the way up behind, where a sine would turn back at level. The hinges' own ranges can't say
+    this: a swing of three hinges shares its angle between them.
     """
 
     name: ClassVar[str] = "hip extension within range"
     unit: ClassVar[str] = "deg"
     bound: ClassVar[float] = 0.0
     kind: ClassVar[Kind] = Kind.AT_LEAST
-    source: ClassVar[str] = "AAOS, hip extension"
+    source: ClassVar[str] = (
+        "AAOS, hip extension; Clippinger 2007 (elite dancers two or three times)"
+    )
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
-        thigh = _thigh(body, self.side)
-        return float(np.sin(np.radians(EXTENSION_DEG))) - thigh[0, 2]
+        behind, across = thigh_swing(body, self.side)
+        limit = float(np.radians(EXTENSION_DEG))
+        return ca.vertcat(limit - behind, limit - behind - across)
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
         return {}
+
+
+def thigh_swing(body: SymbolicBody, side: str) -> tuple[ca.SX, ca.SX]:
+    """Extension and adduction of a thigh in the pelvis' frame, rad: behind and across are +.
+
+    The shortest swing from hanging to the thigh's direction is a rotation vector across the thigh;
+    these are its parts about the axes from side to side and from back to front.
+    """
+    up = _thigh(body, side)[:, 2]
+    share = angle_over_sine(ca.sumsqr(up[:2]), up[2])
+    return share * up[0], (1.0 if side == "left" else -1.0) * share * up[1]
 
 
 def thigh_twist(body: SymbolicBody, side: str) -> ca.SX:

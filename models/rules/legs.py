@@ -10,7 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from enpointe.models.kinematics import SymbolicBody
-from enpointe.models.leg_target import InAir, OnPointe, Standing, ToeOnFloor, ToeOnLeg
+from enpointe.models.leg_target import (
+    FOOT_JOINTS,
+    LEG_JOINTS,
+    InAir,
+    OnPointe,
+    Passing,
+    Standing,
+    ToeOnFloor,
+    ToeOnLeg,
+)
 from enpointe.models.rules.base import Kind, SidedRule, Symbols
 from enpointe.models.rules.hip import thigh_twist
 from enpointe.models.target import PoseTarget
@@ -18,13 +27,15 @@ from enpointe.notation import Side
 
 __all__ = [
     "FootOnItsSign",
-    "FootOnItsWay",
     "KneeBend",
     "KneeOnItsSign",
     "KneeOverToe",
+    "KneeYields",
+    "LegOnItsWay",
     "LegTurnedOut",
     "StretchedKnee",
     "ToeAtTheLeg",
+    "ToeAway",
     "ToeOnTheFloor",
 ]
 
@@ -47,6 +58,15 @@ class KneeBend(SidedRule):
         return {f"{self.side}_knee_bend": np.array(leg.knee_bend)}
 
 
+class KneeYields(KneeBend):
+    """The knee of a leg that weight is coming to or leaving gives as the weight needs it."""
+
+    name: ClassVar[str] = "knee that yields"
+    bound: ClassVar[float] = 60.0
+    kind: ClassVar[Kind] = Kind.PREFER
+    weight: ClassVar[float] = 10.0
+
+
 class KneeOverToe(SidedRule):
     """A bent knee is over the toes: its distance from the foot's line, seen from above, is 0."""
 
@@ -54,7 +74,7 @@ class KneeOverToe(SidedRule):
     unit: ClassVar[str] = "mm"
     bound: ClassVar[float] = 30.0
     kind: ClassVar[Kind] = Kind.PREFER
-    weight: ClassVar[float] = 20.0
+    weight: ClassVar[float] = 50.0
     source: ClassVar[str] = "ballet teaching (plie: knees over the toes)"
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
@@ -107,14 +127,25 @@ class FootOnItsSign(SidedRule):
         return {f"{self.side}_ankle": leg.ankle - hip, "girdle": target.upright.ravel(order="F")}
 
 
-class FootOnItsWay(FootOnItsSign):
-    """The ankle of a passing leg keeps to its way, as well as the floor lets it."""
+class LegOnItsWay(SidedRule):
+    """Hip and knee of a passing leg keep to their way, as well as floor and other leg let them."""
 
-    name: ClassVar[str] = "foot on its way"
-    bound: ClassVar[float] = 60.0
+    name: ClassVar[str] = "leg on its way"
+    unit: ClassVar[str] = "deg"
+    bound: ClassVar[float] = 20.0
     kind: ClassVar[Kind] = Kind.PREFER
-    weight: ClassVar[float] = 300.0
+    weight: ClassVar[float] = 30.0
     source: ClassVar[str] = "Neagle 2005 §5.2.1 (shortest path)"
+
+    def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
+        joints = LEG_JOINTS[: -len(FOOT_JOINTS)]
+        angles = ca.vertcat(*(body.joint(f"{self.side}_{joint}") for joint in joints))
+        return angles - symbols(f"{self.side}_leg_angles", len(joints))
+
+    def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
+        leg = target.legs[Side(self.side)]
+        assert isinstance(leg, Passing)
+        return {f"{self.side}_leg_angles": leg.angles[: -len(FOOT_JOINTS)]}
 
 
 class KneeOnItsSign(SidedRule):
@@ -166,6 +197,34 @@ class ToeOnTheFloor(SidedRule):
         }
 
 
+class ToeAway(SidedRule):
+    """The toe of a tendu is out on the side that it points to: t . d - 0.2 m >= 0.
+
+    The line that the toe lies on goes through under the body to the other side.
+    """
+
+    name: ClassVar[str] = "toe away from the body"
+    unit: ClassVar[str] = "mm"
+    bound: ClassVar[float] = 0.0
+    kind: ClassVar[Kind] = Kind.AT_LEAST
+    source: ClassVar[str] = "Grant, battement tendu"
+
+    def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
+        upright = ca.reshape(symbols("girdle", 9), 3, 3)
+        tip = body.site(f"{self.side}_toe_tip") - body.frame("pelvis").position
+        return ca.dot(symbols(f"{self.side}_towards", 2), (upright.T @ tip)[:2]) - 0.2
+
+    def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
+        leg = target.legs[Side(self.side)]
+        assert isinstance(leg, ToeOnFloor)
+        outward = 1.0 if self.side == "left" else -1.0
+        towards = [leg.ahead, 0.0] if leg.ahead else [0.0, outward]
+        return {
+            f"{self.side}_towards": np.array(towards),
+            "girdle": target.upright.ravel(order="F"),
+        }
+
+
 TOE_THICKNESS = 0.011
 """Bone to floor at the tip of a stretched toe, m."""
 
@@ -209,7 +268,7 @@ class LegTurnedOut(SidedRule):
     unit: ClassVar[str] = "deg"
     bound: ClassVar[float] = 30.0
     kind: ClassVar[Kind] = Kind.PREFER
-    weight: ClassVar[float] = 1.0
+    weight: ClassVar[float] = 2.0
     source: ClassVar[str] = "Neagle 2005 §4.4.6 (turnout about the thigh)"
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:

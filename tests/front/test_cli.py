@@ -92,8 +92,38 @@ def test_pose_prints_rules(
     assert _run(["pose", "arms fifth en haut", "--json"]) == 0
     figures = one_object(capfd.readouterr().out)
     (pose,) = figures["poses"]
-    assert {"name", "qpos", "rules", "solve_ms"} <= set(pose)
+    assert {"name", "qpos", "rules", "cheats", "solve_ms"} <= set(pose)
+    assert pose["cheats"] == []
     assert Path("arms-fifth-en-haut/report.html").is_file()
+
+
+def test_a_real_dancer_s_cheats_are_listed(
+    home: Path, plain_report: list[object], capfd: pytest.CaptureFixture[str]
+) -> None:
+    name = "leg arabesque derrière 90"
+    assert _run(["pose", name, "--dancer", "real", "--json"]) == 0
+    (pose,) = one_object(capfd.readouterr().out)["poses"]
+    greatest = pose["cheats"][0]
+    assert greatest["name"] == "pelvis tipped forward"
+    assert greatest["unit"] == "deg"
+    assert _run(["pose", name, "--dancer", "real"]) == 0
+    text = " ".join(capfd.readouterr().out.split())
+    assert f"cheats: pelvis tipped forward {greatest['value']:.0f} deg" in text
+    assert f"all {len(pose['rules'])} rules held" in text
+    for rule in pose["rules"]:
+        assert rule["rule"] in text
+
+
+def test_a_broken_rule_is_printed_with_how_much(
+    home: Path, tmp_path: Path, plain_report: list[object], capfd: pytest.CaptureFixture[str]
+) -> None:
+    score = tmp_path / "deep.bmn"
+    header = "benesh 1\ntitle: Deep\nmethod: Cecchetti\nmetre: 4/4\ntempo: 60\n"
+    score.write_text(header + "beat 0:\n  feet: second, grand plié\n  arms: first\n", "utf-8")
+    assert _run(["pose", str(score)]) == 1
+    text = " ".join(capfd.readouterr().out.split())
+    assert "weight in the middle: broken, 4" in text
+    assert "mm (at most 20)" in text
 
 
 def test_a_pose_in_the_air_is_a_pose(

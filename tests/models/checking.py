@@ -15,6 +15,7 @@ from enpointe.models.leg_target import (
     InAir,
     LegTarget,
     OnPointe,
+    Passing,
     Standing,
     ToeOnFloor,
     ToeOnLeg,
@@ -75,7 +76,7 @@ def _check_leg(model: mujoco.MjModel, data: mujoco.MjData, found: KeyPose, side:
         else:
             check_pointe(data, leg, found.target.figure, side)
         return
-    if isinstance(leg, InAir) and leg.passing:
+    if isinstance(leg, Passing):
         return
     for joint, angle in zip(FOOT_JOINTS, POINTED_DEG, strict=True):
         assert hinge(model, found.qpos, f"{side}_{joint}") == pytest.approx(angle, abs=3)
@@ -119,15 +120,17 @@ def check_sole(
 
 
 def check_pointe(data: mujoco.MjData, leg: OnPointe, figure: Figure, side: Side) -> None:
-    """The tip on the floor and on its mark, the foot within 10 degrees of the vertical."""
+    """The tip on the floor and on its mark, the toes within 15 degrees of the vertical.
+
+    The foot over them stands less upright, by what the toes carry on of the line.
+    """
     tip = data.site(f"{side}_toe_tip").xpos
     mark = leg.footprint.point(figure.ball_forward + figure.toe_length)
     assert np.linalg.norm(tip - [*mark, 0.0]) < 2 * MM
     foot = data.site(f"{side}_ball").xpos - data.site(f"{side}_heel").xpos
-    assert -foot[2] / np.linalg.norm(foot) > np.cos(np.radians(10))
-    for part in ("foot", "toe"):
-        axis = data.body(f"{side}_{part}").xmat.reshape(3, 3)[:, 0]
-        assert -axis[2] > np.cos(np.radians(10))
+    assert -foot[2] / np.linalg.norm(foot) > np.cos(np.radians(25))
+    toes = data.body(f"{side}_toe").xmat.reshape(3, 3)[:, 0]
+    assert -toes[2] > np.cos(np.radians(15))
     aside = heading(data, f"{side}_toe", 1)
     across = np.array([-along(leg.footprint)[1], along(leg.footprint)[0]])
     assert aside @ across > np.cos(np.radians(0.6))

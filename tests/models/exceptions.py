@@ -10,7 +10,7 @@ from enpointe.notation import Bend, FloorContact, ResolvedFrame
 
 __all__ = ["OVERLAPS", "allowed", "how_it_stands"]
 
-KNEE, PELVIS, BODY = "knee over the toe", "pelvis as written", "body as written"
+KNEE, PELVIS = "knee over the toe", "pelvis as written"
 WEIGHT, ON_ONE = "weight in the middle", "weight over the foot"
 ALL = ("perfect", "real", "tall man", "small woman")
 
@@ -20,37 +20,24 @@ def _all(rules: set[str]) -> dict[str, set[str]]:
 
 
 _ALLOWED: dict[str, dict[str, set[str]]] = {
-    # Feet turned out 66 degrees under knees that turn out 62 at most and less as the hip bends; the
-    # wider the feet, the farther the knees fall in.
-    "second demi-plié": _all({KNEE}),
-    "second grand plié": {"perfect": {KNEE, WEIGHT}, "real": {KNEE, WEIGHT}},
-    "second demi-pointe demi-plié": _all({KNEE}),
-    "third demi-pointe demi-plié": _all({KNEE}),
-    "fifth demi-pointe demi-plié": _all({KNEE}),
+    # A real hip turns out 54 degrees and feet 66: 12 degrees of a shank's 0.4 m are 80 mm, of which
+    # the bent hip's slack gives back the most.
+    "first demi-plié": {"real": {KNEE}},
+    "second demi-plié": {"real": {KNEE}},
+    "third demi-plié": {"real": {KNEE}},
+    "fifth demi-plié": {"real": {KNEE}, "tall man": {PELVIS, KNEE, WEIGHT}},
+    "second demi-pointe demi-plié": {"real": {KNEE}},
+    "third demi-pointe demi-plié": {"real": {KNEE}},
+    "fifth demi-pointe demi-plié": {"real": {KNEE}},
+    # The thigh of the back foot hangs behind, where the hip has no slack, and its knee falls in.
+    "fourth demi-plié": _all({KNEE}),
+    "fourth open demi-plié": _all({KNEE}),
     "fourth demi-pointe demi-plié": _all({KNEE}),
     "fourth open demi-pointe demi-plié": _all({KNEE}),
-    "one foot grand plié": {"perfect": {KNEE}},
-    # A real hip turns out 54: 12 degrees of a shank's 0.4 m are 80 mm.
-    "first demi-plié": {"real": {KNEE}},
-    "first grand plié": {"real": {KNEE}},
-    "first demi-pointe demi-plié": {"real": {KNEE}},
-    "third demi-plié": {"real": {KNEE}},
-    "third grand plié": {"real": {KNEE}},
-    "fifth grand plié": {"real": {KNEE}},
-    # A whole foot apart, both heels down and both ankles at the end of their range: the hips turn
-    # to the back foot and the weight stays there.
-    "fourth demi-plié": _all({PELVIS, KNEE, WEIGHT}),
-    "fourth grand plié": _all({PELVIS, KNEE}),
-    "fourth open demi-plié": _all({PELVIS, KNEE, WEIGHT}),
-    # The tall man's feet are longer and his ankles end where hers do: his weight stays behind.
-    "fifth demi-plié": {"real": {KNEE}, "tall man": {PELVIS, KNEE, WEIGHT}},
+    # The heels stay down in second and both ankles are at the end of their range: the weight stays
+    # over the heels. The tall man's feet are longer for his ankles, here, in fifth and on one foot.
     "one foot demi-plié": {"tall man": {ON_ONE}},
-    # The foot on pointe is asked to stand upright under a leg that does not: the ankle's 85 degrees
-    # are used up and the pelvis tips. In second this is far from what a dancer shows.
-    "first pointe": _all({BODY, PELVIS}),
-    "second pointe": _all({BODY, PELVIS}),
-    "fourth pointe": {"real": {WEIGHT}},
-    "fourth open pointe": {"real": {WEIGHT}},
+    "second grand plié": {**_all({KNEE, WEIGHT}), "tall man": {PELVIS, KNEE, WEIGHT}},
 }
 
 OVERLAPS: dict[tuple[str, str], float] = {

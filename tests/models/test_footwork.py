@@ -28,9 +28,6 @@ ON_FLOOR = (
     "pointe, demi-plié",
 )
 CROSSED = ("third", "fourth", "fourth open", "fifth")
-OUT_OF_REACH = {("fourth open", "grand plié")}
-"""Both heels down a foot apart under knees bent by 122 degrees: no ankle bends so far, and from the
-open fourth on no hip makes up for it. No pose is found, and the certificate says so."""
 
 
 def lines_of(stance: str, floor: str) -> tuple[str, ...]:
@@ -51,12 +48,7 @@ def stood(stance: str, floor: str, style: str) -> KeyPose:
 def every(stances: tuple[str, ...], floors: tuple[str, ...]) -> pytest.MarkDecorator:
     return pytest.mark.parametrize(
         ("stance", "floor"),
-        [
-            (stance, floor)
-            for stance in stances
-            for floor in floors
-            if (stance, floor) not in OUT_OF_REACH
-        ],
+        [(stance, floor) for stance in stances for floor in floors],
     )
 
 
@@ -69,12 +61,6 @@ def test_every_stance_is_certified_and_so_in_mujoco(
     check_certified(found, written(*lines_of(stance, floor)), style)
     check_in_mujoco(model, found)
     assert too_deep(model, found.qpos) == {}
-
-
-@pytest.mark.parametrize("style", STYLES)
-@pytest.mark.parametrize(("stance", "floor"), OUT_OF_REACH)
-def test_what_no_body_reaches_is_not_claimed(stance: str, floor: str, style: str) -> None:
-    assert not stood(stance, floor, style).certificate.legal
 
 
 @every(STANCES, ("demi-pointe, straight", "demi-pointe, demi-plié"))
@@ -101,16 +87,19 @@ def test_on_demi_pointe_the_heel_is_raised_over_a_ball_that_stays(
 def test_on_pointe_only_the_tips_are_on_the_floor(
     stance: str, floor: str, style: str, model: mujoco.MjModel
 ) -> None:
-    """The tips at height 0, ball and heel straight above them within 10 degrees."""
+    """The tips at height 0, the toes upright under a foot that leans back over them.
+
+    Within 15 degrees, the more the legs open, and 25.
+    """
     data = at(model, stood(stance, floor, style).qpos)
     for side in (Side.LEFT,) if stance == "one foot" else Side:
         tip, ball, heel = (data.site(f"{side}_{p}").xpos for p in ("toe_tip", "ball", "heel"))
         assert abs(tip[2]) < 2e-3
         assert 0.03 < ball[2] < heel[2]
         for part in (ball - tip, heel - ball):
-            assert part[2] / np.linalg.norm(part) > np.cos(radians(15))
-        foot = data.body(f"{side}_foot").xmat.reshape(3, 3)[:, 0]
-        assert -foot[2] > np.cos(radians(10))
+            assert part[2] / np.linalg.norm(part) > np.cos(radians(25))
+        toes = data.body(f"{side}_toe").xmat.reshape(3, 3)[:, 0]
+        assert -toes[2] > np.cos(radians(15))
 
 
 @pytest.mark.parametrize("floor", ["demi-pointe, straight", "pointe, straight"])
@@ -125,7 +114,6 @@ def test_a_rise_lifts_the_dancer_and_a_plie_lowers_her(stance: str, floor: str) 
             "demi-pointe, straight",
             "pointe, straight",
         )
-        if (stance, f) not in OUT_OF_REACH
     ]
     assert heights == sorted(heights)
     assert min(np.diff(heights)) > 0.02
@@ -142,7 +130,9 @@ def test_in_a_demi_plie_the_heels_stay_down_under_knees_bent_as_asked(
         for edge in ("inner", "outer"):
             assert data.geom(f"{side}_heel_{edge}").xpos[2] == pytest.approx(0.012, abs=1e-3)
         bend = hinge(model, found.qpos, f"{side}_knee_bend")
-        assert bend == pytest.approx(Style().demi_plie_deg, abs=1)
+        apart = stance.startswith("fourth")
+        asked = Style().demi_plie_in_fourth_deg if apart else Style().demi_plie_deg
+        assert bend == pytest.approx(asked, abs=1)
 
 
 @pytest.mark.parametrize("degrees", [30.0, 45.0, 58.0])

@@ -8,7 +8,12 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from enpointe.models import KeyPose, Style
-from enpointe.models.rules.hip import EXTENSION_DEG, PERFECT_ROTATION_DEG, REAL_ROTATION_DEG
+from enpointe.models.rules.hip import (
+    EXTENSION_DEG,
+    PERFECT_ROTATION_DEG,
+    REAL_ROTATION_DEG,
+    SLACK_DEG,
+)
 from enpointe.notation import Side, names
 
 from .posing import PERFECT, REAL, at, rotation_between, solved, targets_of
@@ -45,6 +50,13 @@ def rotation_of_the_hip(data: mujoco.MjData, side: Side) -> float:
     return float(np.degrees(twist) * (1 if side is Side.LEFT else -1))
 
 
+def slack(data: mujoco.MjData, side: Side) -> float:
+    """What a thigh that is lifted in front or to the side turns out more, degrees."""
+    up = rotation_between(data, "pelvis", f"{side}_thigh").as_matrix()[:, 2]
+    lifted, forward = np.arccos(up[2]), -up[0]
+    return float(SLACK_DEG * (1 - np.cos(lifted)) * (1 + forward) / 2)
+
+
 @pytest.mark.parametrize("name", names())
 def test_the_perfect_dancer_s_hips_are_square(name: str, model: mujoco.MjModel) -> None:
     """Within 5 degrees of upright and of where she faces, arabesque at 90 and above included."""
@@ -75,20 +87,7 @@ def test_the_real_dancer_s_pelvis_lends_what_her_hip_has_not(
     assert np.allclose(lines[0], lines[1], atol=5e-3)  # the same leg in the same place
 
 
-OVERHEAD = pytest.mark.xfail(
-    reason="the rule bounds the sine of the extension, which a thigh lifted over the level behind "
-    "passes from the far side: the hip extends by 140 degrees and the pelvis tips back",
-    strict=False,
-)
-
-
-@pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param(name, marks=OVERHEAD if name.endswith("derrière 120") else ())
-        for name in ON_ONE_LEG
-    ],
-)
+@pytest.mark.parametrize("name", ON_ONE_LEG)
 def test_the_real_dancer_s_hips_do_not_go_farther_back_than_they_can(
     name: str, model: mujoco.MjModel
 ) -> None:
@@ -110,7 +109,11 @@ def test_hips_turn_out_no_farther_than_measured(
 ) -> None:
     data = at(model, solved(name, style=style).qpos)
     for side in Side:
-        assert rotation_of_the_hip(data, side) <= measured + 0.1
+        assert rotation_of_the_hip(data, side) <= measured + slack(data, side) + 0.1
+
+
+BACK_GIVES_DEG = 20.0
+"""The back comes forward under a leg that is level or higher behind."""
 
 
 @pytest.mark.parametrize("name", [n for n in names() if n.startswith("leg ")])
@@ -121,12 +124,12 @@ def test_the_real_dancer_s_torso_stays_upright_over_a_lent_pelvis(
     real = solved(name, style=REAL)
     data = at(model, real.qpos)
     torso = Rotation.from_matrix(data.body("torso").xmat.reshape(3, 3))
-    assert np.degrees(torso.magnitude()) < 3.2
+    behind = "derrière" in name and name.endswith(("90", "120"))
+    assert np.degrees(torso.magnitude()) < (BACK_GIVES_DEG if behind else 3.2)
     if name.endswith(("devant 45", "seconde 45")) or "tendu devant" in name:
         assert off_square(model, real) < 10
 
 
-@OVERHEAD
 def test_the_pelvis_lends_more_to_a_higher_leg(model: mujoco.MjModel) -> None:
     lent = [
         off_square(model, solved(f"leg arabesque derrière {height}", style=REAL))
@@ -144,9 +147,49 @@ def test_dancers_have_rules_of_their_own() -> None:
         for style in (PERFECT, REAL)
     }
     assert rules[REAL] - rules[PERFECT] == {
+        "body lent to the leg",
         "pelvis lent to the leg",
         "left hip extension within range",
         "right hip extension within range",
     }
-    assert rules[PERFECT] - rules[REAL] == {"pelvis as written"}
+    assert rules[PERFECT] - rules[REAL] == {"body as written", "pelvis as written"}
     assert targets_of(name)[0].structure != targets_of(name, style=REAL)[0].structure
+
+
+def test_the_perfect_dancer_does_not_cheat() -> None:
+    for name in names():
+        assert solved(name, style=PERFECT).certificate.cheats == ()
+
+
+@pytest.mark.parametrize("name", names())
+def test_cheats_are_what_mujoco_measures(name: str, model: mujoco.MjModel) -> None:
+    """The three of the pelvis make up its angle off square; nothing under 3 degrees is named."""
+    found = solved(name, style=REAL)
+    cheats = {cheat.name: cheat for cheat in found.certificate.cheats}
+    assert all(cheat.value >= 3 and cheat.unit == "deg" for cheat in cheats.values())
+    pelvis = [cheat.value for what, cheat in cheats.items() if what.startswith("pelvis ")]
+    assert np.hypot.reduce([0.0, *pelvis]) == pytest.approx(off_square(model, found), abs=5.2)
+    assert list(cheats.values()) == sorted(cheats.values(), key=lambda c: -c.value)
+
+
+def test_an_arabesque_names_its_cheats() -> None:
+    """A leg at 90 behind on a hip of 40: the pelvis tips forward by the rest, and is said to."""
+    (greatest, *_) = solved("leg arabesque derrière 90", style=REAL).certificate.cheats
+    assert greatest.name == "pelvis tipped forward"
+    assert greatest.value == pytest.approx(50, abs=5)
+    assert str(greatest) == f"pelvis tipped forward {greatest.value:.0f} deg"
+    high = {
+        c.name: c.value for c in solved("leg arabesque derrière 120", style=REAL).certificate.cheats
+    }
+    assert high["pelvis opened to the working leg"] > 20
+    assert high["pelvis tipped forward"] > 50
+
+
+def test_cheats_are_mirrored_with_the_pose() -> None:
+    name = "pose fourth arabesque"
+    one, other = (
+        solved(name, style=REAL, other_side=way).certificate.cheats for way in (False, True)
+    )
+    swapped = {"left": "right", "right": "left"}
+    image = {" ".join(swapped.get(word, word) for word in c.name.split()): c.value for c in other}
+    assert {c.name: pytest.approx(c.value, abs=0.5) for c in one} == image

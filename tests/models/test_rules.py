@@ -11,8 +11,19 @@ import pytest
 
 from enpointe.models import Figure, PoseTarget, Style, dancer_model, pose_target
 from enpointe.models.kinematics import SymbolicBody, qpos_from_tangent
-from enpointe.models.leg_target import InAir
-from enpointe.models.rules import Rule, Symbols, arms, balance, feet, hip, legs, rules_for, stance
+from enpointe.models.leg_target import InAir, Passing, Standing
+from enpointe.models.rules import (
+    Rule,
+    Symbols,
+    arms,
+    balance,
+    clearance,
+    feet,
+    hip,
+    legs,
+    rules_for,
+    stance,
+)
 
 from .posing import random_tangent, written
 
@@ -49,15 +60,19 @@ OTHERS = ("head: turn left 20, tilt right 10", "body: bend back 10", "pelvis: tu
 
 
 def on_its_way(target: PoseTarget) -> PoseTarget:
-    """The same pose with its legs in the air passing, the foot between flat and pointed."""
-    foot = np.radians([40.0, 5.0, -3.0, 2.0])
+    """The same pose with its legs in the air passing, and those on the floor yielding."""
+    angles = np.radians([30.0, -5.0, 40.0, 20.0, 40.0, 5.0, -3.0, 2.0])
     legs = {
-        side: replace(leg, foot=foot, knee=0.5 * (target.figure.hips[side] + leg.ankle))
+        side: Passing(angles)
         if isinstance(leg, InAir)
+        else replace(leg, yields=True, rise=0.3)
+        if isinstance(leg, Standing)
         else leg
         for side, leg in target.legs.items()
     }
-    return replace(target, legs=legs)
+    standing = any(isinstance(leg, Standing) for leg in legs.values())
+    com = np.array([0.1, 0.05, 0.9]) if standing else target.com
+    return replace(target, legs=legs, com=com)
 
 
 def targets(figure: Figure) -> dict[str, PoseTarget]:
@@ -86,7 +101,7 @@ def test_every_rule_is_among_those_differentiated() -> None:
     used = {type(rule) for target in TARGETS.values() for rule in rules_for(target)}
     written_down = {
         value
-        for module in (arms, balance, feet, hip, legs, stance)
+        for module in (arms, balance, clearance, feet, hip, legs, stance)
         for value in vars(module).values()
         if isinstance(value, type) and issubclass(value, Rule) and hasattr(value, "name")
     }
