@@ -6,8 +6,9 @@ by the least change of root and legs that brings planted feet to their places,
 
     minimise  sum_i w_i d_i^2   subject to   J d = -r   (damped, a few Gauss-Newton steps)
 
-with r the misplacement of a planted foot (ball on its mark, toes flat, direction) or the depth of
-a sole in the floor. What a foot was moved by fades out when it leaves, and in before it arrives.
+with r the misplacement of a planted foot (ball on its mark, toes flat, direction, rise) or the
+depth of a sole in the floor. What a foot was moved by fades out when it has left, and in before it
+arrives.
 """
 
 from __future__ import annotations
@@ -93,6 +94,11 @@ class _Foot:
             found, jacobian = self._off_its_mark(data, contact)
             rows.append(found)
             jacobians.append(jacobian)
+        if isinstance(contact, Standing) and not contact.yields:
+            raised = np.zeros((1, self._model.nv))
+            raised[0, self.dofs[-1]] = 1.0
+            rows.append(np.array([data.qpos[self.addresses[-1]] - contact.rise]))
+            jacobians.append(raised)
         for geom in self._soles[: 2 if contact is not None else 6]:
             depth = data.geom_xpos[geom, 2] - self._model.geom_size[geom, 0]
             if depth < -CLOSE:
