@@ -178,10 +178,10 @@ def _fade(
     if not kept.size:
         return
     loose = np.flatnonzero(~standing)
-    behind = kept[np.clip(np.searchsorted(kept, loose) - 1, 0, len(kept) - 1)]
-    ahead = kept[np.clip(np.searchsorted(kept, loose), 0, len(kept) - 1)]
+    place = np.searchsorted(kept, loose)
     faded = np.zeros((len(loose), len(addresses)))
-    for edge in (behind, ahead):
-        left = np.clip(1.0 - np.abs(time[loose] - time[edge]) / FADE, 0.0, 1.0)
+    for nearest, there in ((place - 1, place > 0), (place, place < len(kept))):
+        edge = kept[np.clip(nearest, 0, len(kept) - 1)]
+        left = there * np.clip(1.0 - np.abs(time[loose] - time[edge]) / FADE, 0.0, 1.0)
         faded += (left**2 * (3.0 - 2.0 * left))[:, None] * change[edge]
     after[np.ix_(loose, addresses)] = before[np.ix_(loose, addresses)] + faded
