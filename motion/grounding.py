@@ -6,8 +6,9 @@ by the least change of root and legs that brings planted feet to their places,
 
     minimise  sum_i w_i d_i^2   subject to   J d = -r   (damped, a few Gauss-Newton steps)
 
-with r the misplacement of a planted foot (ball on its mark, toes flat, direction) or the depth of
-a sole in the floor. What a foot was moved by fades out when it leaves, and in before it arrives.
+with r the misplacement of a planted foot (ball on its mark, toes flat, direction, rise) or the
+depth of a sole in the floor. What a foot was moved by fades out when it has left, and in before it
+arrives.
 """
 
 from __future__ import annotations
@@ -93,6 +94,11 @@ class _Foot:
             found, jacobian = self._off_its_mark(data, contact)
             rows.append(found)
             jacobians.append(jacobian)
+        if isinstance(contact, Standing) and not contact.yields:
+            raised = np.zeros((1, self._model.nv))
+            raised[0, self.dofs[-1]] = 1.0
+            rows.append(np.array([data.qpos[self.addresses[-1]] - contact.rise]))
+            jacobians.append(raised)
         for geom in self._soles[: 2 if contact is not None else 6]:
             depth = data.geom_xpos[geom, 2] - self._model.geom_size[geom, 0]
             if depth < -CLOSE:
@@ -172,10 +178,10 @@ def _fade(
     if not kept.size:
         return
     loose = np.flatnonzero(~standing)
-    behind = kept[np.clip(np.searchsorted(kept, loose) - 1, 0, len(kept) - 1)]
-    ahead = kept[np.clip(np.searchsorted(kept, loose), 0, len(kept) - 1)]
+    place = np.searchsorted(kept, loose)
     faded = np.zeros((len(loose), len(addresses)))
-    for edge in (behind, ahead):
-        left = np.clip(1.0 - np.abs(time[loose] - time[edge]) / FADE, 0.0, 1.0)
+    for nearest, there in ((place - 1, place > 0), (place, place < len(kept))):
+        edge = kept[np.clip(nearest, 0, len(kept) - 1)]
+        left = there * np.clip(1.0 - np.abs(time[loose] - time[edge]) / FADE, 0.0, 1.0)
         faded += (left**2 * (3.0 - 2.0 * left))[:, None] * change[edge]
     after[np.ix_(loose, addresses)] = before[np.ix_(loose, addresses)] + faded

@@ -62,8 +62,9 @@ BRUSHING_DEG = (5.0, 0.0, 0.0, 0.0)
 """A foot that brushes through over the floor, in the order of `FOOT_JOINTS`."""
 OPENED = (4.0, 8.0, 12.0, 16.0, 20.0)
 DRAWN_UP = (0.0, 6.0, 12.0, 18.0, 24.0, 30.0, 36.0, 42.0)
-"""Detours, in the order in which they are tried, degrees of the hip: opened, then with a flat foot
-drawn up, which bends the knee by twice as much and leaves the foot under the hip."""
+ASIDE = (0.0, 8.0, 16.0)
+"""Detours, in the order in which they are tried, degrees of the hip: opened; then with a flat foot
+drawn up, which bends the knee by twice as much and leaves the foot under the hip or aside of it."""
 
 
 @dataclass(frozen=True)
@@ -211,7 +212,9 @@ EASE = 0.3
 
 def _detours(at: float) -> list[Detour]:
     opened = [Detour(radians(d), at=at) for d in OPENED]
-    return opened + [Detour(radians(d), radians(2 * d), True, at) for d in DRAWN_UP]
+    return opened + [
+        Detour(radians(d + aside), radians(2 * d), True, at) for d in DRAWN_UP for aside in ASIDE
+    ]
 
 
 @lru_cache(maxsize=8)

@@ -83,6 +83,47 @@ class Dance:
         if begin is not None:
             yield begin, self.stations[-1]
 
+    def joint_speeds(self) -> dict[str, Array]:
+        """Angular speed of each hinged body against its parent, (T,), rad/s.
+
+        Of all the hinges between them together: one hinge of three may be fast near its singular
+        line where the limb is not.
+        """
+        model = self.motion.model
+        hinges: dict[str, list[int]] = {}
+        for joint in range(1, model.njnt):
+            hinges.setdefault(model.body(int(model.jnt_bodyid[joint])).name, []).append(joint)
+        speeds = {body: np.empty(len(self.motion.time)) for body in hinges}
+        data = mujoco.MjData(model)
+        for i, (qpos, qvel) in enumerate(zip(self.motion.qpos, self.motion.qvel, strict=True)):
+            data.qpos[:] = qpos
+            mujoco.mj_kinematics(model, data)
+            for body, joints in hinges.items():
+                turning = qvel[model.jnt_dofadr[joints]] @ data.xaxis[joints]
+                speeds[body][i] = np.linalg.norm(turning)
+        return speeds
+
+    def between_the_legs(self, every: int) -> Array:
+        """Least distance between the limbs of the two legs in every so-manyeth sample, m."""
+        model = self.motion.model
+        limbs = {
+            side: [model.geom(f"{side}_{part}_limb").id for part in ("thigh", "shank", "foot")]
+            for side in Side
+        }
+        data, ends = mujoco.MjData(model), np.empty(6)
+        gaps = []
+        for qpos in self.motion.qpos[::every]:
+            data.qpos[:] = qpos
+            mujoco.mj_kinematics(model, data)
+            gaps.append(
+                min(
+                    mujoco.mj_geomDistance(model, data, one, other, 0.1, ends)
+                    for one in limbs[Side.LEFT]
+                    for other in limbs[Side.RIGHT]
+                )
+            )
+        return np.array(gaps)
+
     def springing(self) -> Mask:
         """The samples in the air or on the way there and back: pushed off, landed, given way."""
         out = np.zeros(len(self.motion.time), dtype=bool)

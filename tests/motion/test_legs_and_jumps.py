@@ -21,38 +21,19 @@ ON_THE_FLOOR = 0.008
 JUMPS = ("glissade-jete-assemble", "grand-jete-en-tournant")
 EARTHBOUND = tuple(score for score in SCORES if score not in JUMPS)
 NOT_YET = {
-    "test_no_sole_sinks_into_the_floor": {
-        "adage-developpe": "25 mm at 9.1 s",
-        "evaluation-poses": "29 mm at 27.4 s",
-        "glissade-jete-assemble": "24 mm, the foot that slides out to the glissade",
-        "grand-jete-en-tournant": "68 mm, the leg thrown to the front, and 46 mm in the coupé",
-    },
-    "test_no_joint_moves_faster_than_a_dancers": {
-        "glissade-jete-assemble": "48 rad/s of the toes",
-        "grand-jete-en-tournant": "106 rad/s of the right hip, in the coupé",
-    },
-    "test_what_moves_stays_within_the_joints": {
-        "evaluation-poses": "16 degrees beyond the hip's turn, between beats 8 and 12",
-    },
-    "test_a_planted_foot_stays": {
-        "adage-developpe": "15 mm, the raised foot while the other takes its place",
-        "evaluation-poses": "9 mm",
-        "glissade-jete-assemble": "3.3 mm",
-        "temps-lie-grand-battement": "8 mm, from the fourth to the tendu and back",
-    },
     "test_one_foot_carries_the_weight_while_the_other_is_off_the_floor": {
-        "adage-developpe": "27 mm outside at 14.4 s",
-        "grand-jete-en-tournant": "213 mm outside in the step, a foot on edge in the coupé",
+        "adage-developpe": "67 mm: from demi-pointe the heel is down after the weight is over it",
+        "grand-jete-en-tournant": "308 mm: in a chassé and a step the weight falls between feet",
     },
     "test_gravity_alone_moves_the_centre_of_mass_in_the_air": {
-        "glissade-jete-assemble": "7.0 mm at the take-off, whose corner is rounded",
-        "grand-jete-en-tournant": "5.7 mm at the take-off, whose corner is rounded",
+        "glissade-jete-assemble": "7.7 mm at the take-off, whose corner is rounded",
+        "grand-jete-en-tournant": "5.9 mm at the take-off, whose corner is rounded",
     },
-    "test_nothing_touches_the_floor_in_the_air": {
-        "glissade-jete-assemble": "18 mm, toes that stretch sooner than the glissade rises",
+    "test_key_poses_are_met_on_their_beats": {
+        "temps-lie-grand-battement": "51 mm: the pelvis tips in the fourth, and the waist lags it",
     },
     "test_key_poses_of_a_jump_are_passed_on_their_beats": {
-        "grand-jete-en-tournant": "18 degrees at the touch",
+        "grand-jete-en-tournant": "18 degrees of an arm at the touch",
     },
 }
 """What is known to be wrong, by test and score, with how much. Each is a strict xfail: who mends it
@@ -93,17 +74,32 @@ def outside(com: Array, points: Array) -> float:
 def test_no_sole_sinks_into_the_floor(whole: Dance) -> None:
     depth = -lowest(whole)
     worst = int(depth.argmax())
-    assert depth[worst] < 0.015, f"{1000 * depth[worst]:.1f} mm at {whole.motion.time[worst]:.2f} s"
+    assert depth[worst] < 0.002, f"{1000 * depth[worst]:.1f} mm at {whole.motion.time[worst]:.2f} s"
+
+
+FASTEST = {"thigh": 25.0, "shank": 25.0, "foot": 30.0, "toe": 30.0, "arm": 30.0, "trunk": 6.0}
+"""Angular speed of a part against the one that carries it, rad/s: bounds of ours, of the order of
+what hip and knee reach in a hard kick (reviewed by Kellis & Katis 2007) and ankles in a jump."""
 
 
 @pytest.mark.slow
 def test_no_joint_moves_faster_than_a_dancers(whole: Dance) -> None:
-    """35 rad/s is 2000 degrees a second: some three times a quick kick."""
-    speeds = np.abs(whole.motion.qvel[:, 6:])
-    sample, joint = np.unravel_index(int(speeds.argmax()), speeds.shape)
-    name = whole.motion.model.joint(int(joint) + 1).name
-    time = whole.motion.time[sample]
-    assert speeds.max() < 35.0, f"{speeds.max():.0f} rad/s of {name} at {time:.2f} s"
+    speeds = whole.joint_speeds()
+    for body, speed in speeds.items():
+        sort = next((part for part in ("thigh", "shank", "foot", "toe") if part in body), None)
+        limb = "arm" if body.startswith(("left", "right")) else "trunk"
+        worst = int(speed.argmax())
+        time = whole.motion.time[worst]
+        assert speed[worst] < FASTEST[sort or limb], f"{body}: {speed[worst]:.0f} at {time:.2f} s"
+
+
+@pytest.mark.slow
+def test_the_legs_go_round_each_other(whole: Dance) -> None:
+    """Thigh, shank and foot of the one against those of the other, every fifth sample."""
+    gaps = whole.between_the_legs(every=5)
+    worst = int(gaps.argmin())
+    time = whole.motion.time[5 * worst]
+    assert gaps[worst] > -0.002, f"{-1000 * gaps[worst]:.1f} mm deep at {time:.2f} s"
 
 
 @pytest.mark.slow

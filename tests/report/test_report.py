@@ -109,13 +109,22 @@ def test_sections_of_a_physical_performance(reports: dict[str, ReportFiles]) -> 
         "effort",
         "balance",
         "joints",
+        "rules",
         "certificates",
     ]
 
 
 def test_a_kinematic_performance_has_no_physics_in_it(reports: dict[str, ReportFiles]) -> None:
     page = read(reports["kinematic"]["report"])
-    assert section_names(page) == ["figures", "stave", "poses", "wrists", "effort", "certificates"]
+    assert section_names(page) == [
+        "figures",
+        "stave",
+        "poses",
+        "wrists",
+        "effort",
+        "rules",
+        "certificates",
+    ]
     assert "No physics" in words_of(verdict(page))
     assert set(figures(page)) == {"duration", "tempo", "b", "x0", "space", "rms"}
 
