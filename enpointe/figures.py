@@ -110,12 +110,21 @@ class RuleFigures(TypedDict):
     held: bool
 
 
+class CheatFigures(TypedDict):
+    """What a real dancer lends to a position, by name."""
+
+    name: str
+    value: float
+    unit: str
+
+
 class PoseFigures(TypedDict):
     """One key pose."""
 
     name: str
     qpos: list[float]
     rules: list[RuleFigures]
+    cheats: list[CheatFigures]
     solve_ms: float
     recognised_as: str
 
