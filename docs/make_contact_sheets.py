@@ -11,6 +11,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+import matplotlib
 from PIL import Image, ImageDraw, ImageFont
 
 from enpointe.models import KeyPoseSolver, Style, dancer_model, pose_target
@@ -20,6 +21,8 @@ from enpointe.sim.camera import View
 from enpointe.sim.render import open_painter
 
 FOLDER = Path(__file__).parent / "images"
+FONT = Path(matplotlib.get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf"
+"""Pillow's own font has no accents."""
 WIDTH, HEIGHT, LABEL = 140, 180, 18
 COLUMNS = 6
 VIEWS = (View(distance=4.6), View(azimuth=90.0, distance=4.6))
@@ -38,7 +41,7 @@ def sheet(solver: KeyPoseSolver, part: str, *, real: bool) -> Image.Image:
     rows = -(-len(chosen) // COLUMNS)
     cell = (2 * WIDTH, HEIGHT + LABEL)
     page = Image.new("RGB", (COLUMNS * cell[0], rows * cell[1]), "white")
-    ink, font = ImageDraw.Draw(page), ImageFont.load_default(12)
+    ink, font = ImageDraw.Draw(page), ImageFont.truetype(str(FONT), 12)
     with open_painter(solver.model, WIDTH, HEIGHT, quality="fine")[0] as painter:
         for i, name in enumerate(chosen):
             score = vocabulary_score(name)
