@@ -9,6 +9,7 @@ noise) among the solved poses themselves.
 
     python benchmarks/recognition.py
     python benchmarks/recognition.py --repeats 20 --json
+    python benchmarks/recognition.py --repeats 8 --write   # the tables of docs/reading-back.md
 """
 
 from __future__ import annotations
@@ -21,9 +22,11 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import argparse
 import json
+import re
 from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from time import perf_counter
 
 import numpy as np
@@ -36,6 +39,10 @@ from enpointe.posing import vocabulary_score
 
 Array = NDArray[np.float64]
 Noise = Callable[[np.random.Generator, int], Array]
+PAGE = Path(__file__).resolve().parents[1] / "docs" / "reading-back.md"
+MARKED = re.compile(
+    r"(<!-- made by benchmarks/recognition\.py -->\n).*?(<!-- end -->)", flags=re.DOTALL
+)
 SEED = 20051122
 AMOUNT = np.radians(5.0)
 NOISES: Mapping[str, Noise] = {
@@ -193,10 +200,16 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--repeats", type=int, default=10, help="shakes of each pose (default 10)")
     parser.add_argument("--json", action="store_true", help="one JSON object instead of the table")
+    parser.add_argument("--write", action="store_true", help="put the tables into the docs")
     arguments = parser.parse_args()
     if arguments.repeats < 1:
         parser.error("--repeats must be at least 1")
     found = report(arguments.repeats)
+    if arguments.write:
+        page = PAGE.read_text(encoding="utf-8")
+        tables = re.sub(r"^### (.*)$", r"**Noise: \1**", table(found), flags=re.MULTILINE)
+        tables = re.sub(r"^reference laid out.*\n", "", tables, flags=re.MULTILINE)
+        PAGE.write_text(MARKED.sub(lambda m: f"{m[1]}\n{tables}\n\n{m[2]}", page), encoding="utf-8")
     print(json.dumps(found, indent=2, ensure_ascii=False) if arguments.json else table(found))
 
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Callable, Iterable
+from importlib.resources import files
 from inspect import isabstract
 from pathlib import Path
 
@@ -21,7 +22,11 @@ from enpointe.models.rules import Kind, Rule
 from enpointe.motion import PRESETS
 from enpointe.notation.amounts import DEFAULT_DEGREES
 from enpointe.notation.glyphs import GLYPHS
+from enpointe.notation.stage import DIRECTION_WORDS
+from enpointe.notation.tempo import TEMPO_WORDS
 from enpointe.notation.vocabulary import ARM_PLACES, ARMS, FEET, LEGS, POSES
+from enpointe.notation.vocabulary_arms import BODY_PLACES, CONTACT_PLACES
+from enpointe.notation.vocabulary_feet import BENDS, FLOOR
 
 sys.path.insert(0, str(Path(__file__).parent))
 from prepose import CLAIMS, measured
@@ -134,6 +139,47 @@ def degrees() -> str:
         ("", *turns),
         ((part, *(f"{DEFAULT_DEGREES[part, turn]:g}°" for turn in turns)) for part in parts),
     )
+
+
+def tempos() -> str:
+    return table(("word", "beats a minute"), ((word, f"{n:g}") for word, n in TEMPO_WORDS.items()))
+
+
+def stances() -> str:
+    says = {**dict.fromkeys(FLOOR, "the foot"), **dict.fromkeys(BENDS, "the knee")}
+    words = {**FLOOR, **BENDS}
+    return table(
+        ("word", "also", "says of"),
+        ((also[0], ", ".join(also[1:]), says[key]) for key, also in words.items()),
+    )
+
+
+def body() -> str:
+    return table(
+        ("place", "also", "is"),
+        (
+            (words[0], ", ".join(words[1:]), CONTACT_PLACES[place].description)
+            for place, words in BODY_PLACES.items()
+        ),
+    )
+
+
+def directions() -> str:
+    def side(degrees: float) -> str:
+        if degrees in (0.0, 180.0):
+            return f"{degrees:g}°"
+        return f"{'left' if degrees > 0 else 'right'} {abs(degrees):g}°"
+
+    return table(
+        ("direction", "also", "from the audience"),
+        ((words[0], ", ".join(words[1:]), side(d)) for d, words in DIRECTION_WORDS.items()),
+    )
+
+
+def grammar() -> str:
+    text = files("enpointe.notation").joinpath("grammar.lark").read_text("utf-8")
+    rules = text[text.index("start:") : text.index("\n_BENESH:")].strip()
+    return f"\n```lark\n{rules}\n```\n\n"
 
 
 def glyphs() -> str:
@@ -262,6 +308,11 @@ TABLES: dict[str, Callable[[], str]] = {
         poses,
         places,
         degrees,
+        tempos,
+        stances,
+        body,
+        directions,
+        grammar,
         glyphs,
         presets,
         segments,

@@ -12,7 +12,15 @@ from numpy.typing import NDArray
 
 from enpointe.figures import ComparisonFigures
 from enpointe.notation import Score, Side, load_score
-from enpointe.performing import Performance, Progress, dance, prepare, silent
+from enpointe.performing import (
+    PHRASED,
+    Performance,
+    Progress,
+    dance,
+    has_qualities,
+    prepare,
+    silent,
+)
 
 if TYPE_CHECKING:
     import mujoco
@@ -113,9 +121,16 @@ def compare(
         dancer=dancer,
         progress=progress,
     )
+    phrased = effort is None and has_qualities(score)
     performances = {
         variant: dance(
-            choreography, quality, name, Interpolation(kind), controller, progress=progress
+            choreography,
+            quality,
+            PHRASED if phrased else name,
+            Interpolation(kind),
+            controller,
+            phrased=phrased,
+            progress=progress,
         )
         for variant, (kind, controller) in VARIANTS.items()
     }

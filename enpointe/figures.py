@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TypedDict
 
 __all__ = [
+    "CheatFigures",
     "ComparisonFigures",
     "DifferenceFigures",
     "EffortFigures",
@@ -19,6 +20,7 @@ __all__ = [
     "PoseFigures",
     "PosesFigures",
     "RuleFigures",
+    "RuleKeptFigures",
 ]
 
 
@@ -48,6 +50,19 @@ class FlightFigures(TypedDict):
     turn_deg: float
 
 
+class RuleKeptFigures(TypedDict):
+    """One rule over a whole movement."""
+
+    rule: str
+    unit: str
+    bound: float
+    at_least: bool
+    worst: float
+    at: float
+    between: list[str]
+    held_fraction: float
+
+
 class KinematicFigures(TypedDict):
     """What every performance has."""
 
@@ -58,6 +73,7 @@ class KinematicFigures(TypedDict):
     completed: bool
     duration: float
     rules_broken: list[str]
+    rules: list[RuleKeptFigures]
     logistic: FitFigures | None
 
 

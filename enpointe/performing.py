@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from enpointe.errors import EnpointeError
-from enpointe.figures import PerformanceFigures, PhysicalFigures
+from enpointe.figures import PerformanceFigures, PhysicalFigures, RuleKeptFigures
 from enpointe.notation import Score, load_score
 
 if TYPE_CHECKING:
     from enpointe.controllers import Recording
     from enpointe.models import Anthropometry, KeyPose, Style
-    from enpointe.motion import Choreography, Effort, Interpolation, Motion
+    from enpointe.motion import Choreography, Effort, Interpolation, Motion, RuleKept
     from enpointe.motion.wrist import LogisticFit
     from enpointe.sim.measures import Measures
 
@@ -23,6 +23,8 @@ __all__ = ["CONTROLLERS", "Performance", "Progress", "dance", "perform", "prepar
 
 Progress = Callable[[str, float, float], None]
 """Called with what is being done, how much of it is done, and how much there is."""
+PHRASED = "as its phrases are marked"
+"""The name of the effort of a dance whose phrases have qualities of their own."""
 CONTROLLERS = ("kinematic", "pd")
 
 
@@ -37,12 +39,14 @@ class Performance:
     Attributes:
         choreography: The score solved on the dancer.
         effort: Quality that was asked.
-        effort_name: Preset or numbers.
+        effort_name: Preset or numbers, or `PHRASED` where each phrase has its own.
         interpolation: How the key poses were joined.
         controller: "kinematic" or "pd".
         motion: The reference: what was to be danced.
         recording: What happened; None for a kinematic performance.
         measures: Figures of the recording; None for a kinematic performance.
+        rules: Every rule over the whole movement, in between key poses too; empty for slerp, which
+            asks nothing there.
         shortfall: Most that the floor could not give of the force and moment that the movement
             asks of it, N (moments over 1 m); None for a kinematic performance.
     """
@@ -56,6 +60,7 @@ class Performance:
     recording: Recording | None
     measures: Measures | None
     shortfall: float | None = None
+    rules: tuple[RuleKept, ...] = ()
 
     @property
     def score(self) -> Score:
@@ -118,12 +123,26 @@ class Performance:
             "completed": self.completed,
             "duration": self.danced.duration,
             "rules_broken": [f"{pose.name}: {words}" for pose, words in self.broken],
+            "rules": [_rule_figures(kept) for kept in self.rules],
             "logistic": None if fit is None else {"b": fit.time, "x0": fit.weight, "rms": fit.rms},
         }
         if self.recording is not None and self.measures is not None:
             physical = _physical_figures(self.recording, self.measures, self.shortfall)
             figures = {**figures, **physical}
         return figures
+
+
+def _rule_figures(kept: RuleKept) -> RuleKeptFigures:
+    return {
+        "rule": kept.rule,
+        "unit": kept.unit,
+        "bound": kept.bound,
+        "at_least": kept.at_least,
+        "worst": kept.worst,
+        "at": kept.at,
+        "between": list(kept.between),
+        "held_fraction": kept.held,
+    }
 
 
 def _physical_figures(
@@ -219,8 +238,9 @@ def perform(
 
     Args:
         source: A shipped score's name, a `.bmn` file, or a score.
-        effort: A preset's name, which brings its tempo, or "time=-3.5,weight=.41,space=1";
-            natural, at the score's own tempo, if None.
+        effort: A preset's name, which brings its tempo, or "time=-3.5,weight=.41,space=1". If
+            None, each phrase's own where the score marks one, and else natural, at the score's own
+            tempo.
         tempo: Pulses a minute; the preset's or the score's if None.
         controller: "pd", or "kinematic" for the movement without physics.
         interpolation: "expressive", "logistic" or "slerp".
@@ -255,7 +275,21 @@ def perform(
         dancer=dancer,
         progress=progress,
     )
-    return dance(choreography, quality, effort_name, kind, controller, progress=progress)
+    phrased = effort is None and has_qualities(score)
+    return dance(
+        choreography,
+        quality,
+        PHRASED if phrased else effort_name,
+        kind,
+        controller,
+        phrased=phrased,
+        progress=progress,
+    )
+
+
+def has_qualities(score: Score) -> bool:
+    """Whether a phrase of a score is marked with a quality of its own."""
+    return any(phrase.effort is not None for phrase in score.phrases)
 
 
 def dance(
@@ -265,15 +299,21 @@ def dance(
     interpolation: Interpolation,
     controller: str,
     *,
+    phrased: bool = False,
     progress: Progress = silent,
 ) -> Performance:
-    """Move and, unless kinematic, physically perform a solved score; see `perform`."""
-    from enpointe.motion import interpolate
+    """Move and, unless kinematic, physically perform a solved score; see `perform`.
 
+    With `phrased`, phrases that the score marks with a quality are danced in it.
+    """
+    from enpointe.motion import interpolate, rules_kept, ways_of
+
+    ways = ways_of(choreography, effort, interpolation, phrased=phrased)
     motion = interpolate(
         choreography,
         effort,
         interpolation,
+        ways=ways,
         progress=lambda done, total: progress("movement", done, total),
     )
     recording = measures = shortfall = None
@@ -302,4 +342,5 @@ def dance(
         recording,
         measures,
         shortfall,
+        rules_kept(motion, ways),
     )

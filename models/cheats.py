@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from enpointe.models.certificate import Cheat
-from enpointe.models.leg_target import OnPointe, Standing
+from enpointe.models.leg_target import OnPointe, Passing, Standing
 from enpointe.models.target import PoseTarget, turn_tilt_bend
 from enpointe.notation import Side
 
@@ -50,7 +50,7 @@ def cheats_of(
         if isinstance(leg, Standing | OnPointe):
             turn = float(data.joint(f"{side}_ankle_turn").qpos[0])
             found.append(_cheat(f"{side} foot turned out past the shin", turn))
-        else:
+        elif not isinstance(leg, Passing):
             twist = _outward_twist(pelvis.inv() * _rotation(data, f"{side}_thigh"), side)
             found.append(_cheat(f"{side} leg turned out less", leg.turnout - twist))
     return tuple(sorted((c for c in found if c.value >= LEAST_DEG), key=lambda c: -c.value))

@@ -15,7 +15,7 @@ from enpointe.models.foot_positions import Footprint
 from enpointe.models.joints import Joints, angle_between
 from enpointe.notation import Bend, FloorContact, Side
 
-__all__ = ["Footing", "footing", "footprint_of", "knee_bend"]
+__all__ = ["Footing", "footing", "footprint_of", "knee_bend", "lowest_sole"]
 
 Vector = NDArray[np.float64]
 ALOFT = 0.08
@@ -70,7 +70,7 @@ class Footing:
 
 def footing(joints: Joints) -> Mapping[Side, Footing]:
     """Both feet, from the heights of their soles and the place of the centre of mass."""
-    lows = {side: float(min(_sole(joints, side)[:, 2])) for side in Side}
+    lows = {side: _low(joints, side) for side in Side}
     shares = _shares(joints)
     floor = min(lows[side] for side in Side if shares[side] > _LEAST_SHARE)
     aloft = min(lows.values()) > ALOFT
@@ -78,6 +78,11 @@ def footing(joints: Joints) -> Mapping[Side, Footing]:
         side: _one(joints, side, low - (0.0 if aloft else floor), shares[side], aloft=aloft)
         for side, low in lows.items()
     }
+
+
+def lowest_sole(joints: Joints) -> float:
+    """Height of the lowest point of both soles, m."""
+    return min(_low(joints, side) for side in Side)
 
 
 def knee_bend(joints: Joints, side: Side) -> float:
@@ -143,6 +148,10 @@ def _steepness(along: Vector) -> float:
 
 def _sole(joints: Joints, side: Side) -> Vector:
     return np.array([joints[f"{side}_{part}"] for part in ("heel", "ball", "toe_tip")])
+
+
+def _low(joints: Joints, side: Side) -> float:
+    return float(min(_sole(joints, side)[:, 2]))
 
 
 def _shares(joints: Joints) -> dict[Side, float]:

@@ -13,7 +13,7 @@ in the root's position and rotation vector and the hinge angles (nv unknowns).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from time import perf_counter
 from typing import Any
@@ -171,6 +171,17 @@ class PoseProblem:
         ]
         return Certificate(tuple(results))
 
+    def certify_each(
+        self, unknowns: NDArray[np.float64], parameters: NDArray[np.float64]
+    ) -> list[Certificate]:
+        """Measure every rule at many poses at once: unknowns (N, nv) and parameters (N, P)."""
+        residuals = np.asarray(self._measure(unknowns.T, parameters.T)).T
+        parts = list(zip(self.rules, self._slices, strict=True))
+        return [
+            Certificate(tuple(_result(rule, residual[part]) for rule, part in parts))
+            for residual in residuals
+        ]
+
 
 class KeyPoseSolver:
     """Solves poses of one dancer; compiled problems are kept for poses of the same structure.
@@ -246,6 +257,22 @@ class KeyPoseSolver:
         away = float(np.sum((pose.qpos[7:] - guess[7:]) ** 2))
         cost = problem.cost_at(unknowns, problem.parameters(pose.target))
         return not pose.certificate.legal, cost + _CONTINUITY * away
+
+    def certify(
+        self, targets: Sequence[PoseTarget], qpos: NDArray[np.float64]
+    ) -> tuple[Certificate, ...]:
+        """Measure the rules at configurations (N, nq), each against its own target."""
+        found: dict[int, Certificate] = {}
+        alike: dict[object, list[int]] = {}
+        for index, target in enumerate(targets):
+            alike.setdefault(target.structure, []).append(index)
+        for indices in alike.values():
+            problem = self.problem(targets[indices[0]])
+            unknowns = np.array([_tangent(qpos[i], targets[i].facing) for i in indices])
+            parameters = np.array([problem.parameters(targets[i]) for i in indices])
+            certificates = problem.certify_each(unknowns, parameters)
+            found |= dict(zip(indices, certificates, strict=True))
+        return tuple(found[i] for i in range(len(targets)))
 
     def _solve_from(self, target: PoseTarget, seed: NDArray[np.float64]) -> KeyPose:
         problem = self.problem(target)

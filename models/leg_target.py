@@ -17,10 +17,12 @@ from enpointe.notation import Bend, Direction, FloorContact, ResolvedLeg, Side
 __all__ = [
     "DEMI_POINTE_DEG",
     "FOOT_JOINTS",
+    "LEG_JOINTS",
     "POINTED_DEG",
     "InAir",
     "LegTarget",
     "OnPointe",
+    "Passing",
     "Standing",
     "ToeOnFloor",
     "ToeOnLeg",
@@ -41,16 +43,25 @@ class Standing:
         footprint: Where the foot is when it is flat; a rising foot keeps its ball.
         rise: Angle of the foot to the floor about the ball, rad; 0 is flat.
         knee_bend: rad; 0 is straight.
+        yields: Whether heel and knee give way to a weight that is passing from foot to foot: rise
+            and bend are wishes then.
     """
 
     footprint: Footprint
     rise: float = 0.0
     knee_bend: float = 0.0
+    yields: bool = False
 
     def soles(self, figure: Figure) -> NDArray[np.float64]:
         """Points of the sole that bear weight, (S, 2), m."""
         corners = self.footprint.sole(figure)
-        return corners if self.rise < radians(1.0) else corners[2:]
+        risen = min(self.rise / radians(RISEN_DEG), 1.0)
+        return np.vstack([(1 - risen) * corners[:2] + risen * corners[2:4], corners[2:]])
+
+
+RISEN_DEG = 10.0
+"""A foot raised by this much bears on ball and toes alone; on the way there the heel gives its
+share up by degrees, so that the weight need not leap as the heel leaves the floor."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,29 +132,32 @@ class InAir:
         ankle: (3,), m.
         knee: (3,), m, or None for a stretched leg.
         turnout: rad.
-        foot: For a leg on its way, the angles that the foot passes through, in the order of
-            `FOOT_JOINTS`, (4,), rad; None for a leg in its place, whose foot is pointed. A leg on
-            its way keeps to it as well as the floor lets it.
     """
 
     ankle: Vector
     knee: Vector | None
     turnout: float
-    foot: Vector | None = None
 
-    @property
-    def passing(self) -> bool:
-        """Whether the leg is on its way."""
-        return self.foot is not None
+
+@dataclass(frozen=True, slots=True)
+class Passing:
+    """On its way from one place to another, which it keeps to as well as the floor lets it.
+
+    Attributes:
+        angles: That hip, knee and foot pass through, in the order of `LEG_JOINTS`, (8,), rad.
+    """
+
+    angles: Vector
 
 
 FOOT_JOINTS = ("ankle_point", "ankle_turn", "ankle_roll", "toe_raise")
+LEG_JOINTS = ("hip_raise", "hip_cross", "hip_turn", "knee_bend", *FOOT_JOINTS)
 POINTED_DEG = (75.0, 0.0, 0.0, -15.0)
 """A stretched foot, in the order of `FOOT_JOINTS`: instep out, toes carrying the line on. Dancers'
 ankles go to 77-83 degrees (Russell et al. 2010)."""
 
 
-LegTarget = Standing | OnPointe | ToeOnFloor | ToeOnLeg | InAir
+LegTarget = Standing | OnPointe | ToeOnFloor | ToeOnLeg | InAir | Passing
 
 
 def leg_target(

@@ -18,6 +18,7 @@ from enpointe.models.target import turn_tilt_bend
 from enpointe.notation import (
     ArmsPosition,
     FeetPosition,
+    FloorContact,
     LegPosition,
     Orientation,
     PosePosition,
@@ -28,6 +29,7 @@ from enpointe.notation.vocabulary import names as vocabulary
 
 __all__ = [
     "ALTERNATIVES",
+    "NAMED_DEG",
     "Match",
     "Position",
     "at_height",
@@ -37,6 +39,7 @@ __all__ = [
     "leg_parts",
     "limb_error",
     "match_of",
+    "named_within",
     "nearest",
     "of_left",
     "rms",
@@ -47,11 +50,16 @@ __all__ = [
 
 Vector = NDArray[np.float64]
 Position = FeetPosition | ArmsPosition | LegPosition | PosePosition
-_NAMED_DEG = 14.0
+NAMED_DEG = 14.0
 _WORST_DEG = 32.0
 """A position is named when its limbs are within the first of these together and within the second
 each: halfway between the rms of 5 degrees of noise in every joint, about 7, and the 20 and more
 that most neighbours in the vocabulary are apart."""
+_HIGH_DEG = 60.0
+"""A thigh higher than this, from hanging, is a leg en l'air: straight or in attitude, to the front,
+to the side or behind, and nothing else."""
+_HIGH_WITHIN_DEG = 40.0
+"""Such a leg is named within this: nearly half of what is between two directions."""
 _TOUCH_DEG = 3.0
 """What a toe on the floor counts for against a position that has it off, or the other way about."""
 ALTERNATIVES = 3
@@ -95,7 +103,7 @@ class Match:
 
 
 def match_of(
-    position: Position, names: tuple[str, ...], parts: Mapping[str, float], *, certain: bool = False
+    position: Position, names: tuple[str, ...], parts: Mapping[str, float], *, within: float = 0.0
 ) -> Match:
     """A match from the angles of each limb.
 
@@ -103,12 +111,12 @@ def match_of(
         position: Which.
         names: What it is called.
         parts: Degrees by limb.
-        certain: Whether something else than directions says that it is this position.
+        within: Degrees within which something else than directions says that it is this position.
     """
     worst = max(parts, key=lambda part: parts[part])
     distance = rms(parts.values())
-    near = distance < _NAMED_DEG and parts[worst] < _WORST_DEG
-    named = near or (certain and distance < _WORST_DEG)
+    near = distance < NAMED_DEG and parts[worst] < _WORST_DEG
+    named = near or distance < within
     return Match(position, names, distance, "deg", worst, parts[worst], named)
 
 
@@ -149,6 +157,17 @@ def touch_penalty(limbs: LimbDirections, side: Side, each: LegReference) -> floa
     """What a toe that is on the floor, or is not, adds to the square of a distance, deg^2."""
     touches = limbs.feet[side].clearance < TOUCHING
     return 0.0 if touches == each.touches else _TOUCH_DEG**2
+
+
+def named_within(limbs: LimbDirections, side: Side, each: LegReference) -> float:
+    """Degrees within which a leg is in a position whatever its directions say; 0 for any other.
+
+    A toe on the floor that bears nothing is a tendu; a leg en l'air is one of few.
+    """
+    if each.touches and limbs.feet[side].floor is FloorContact.TOUCH:
+        return _WORST_DEG
+    high = each.position.name in _EN_L_AIR and _elevation(limbs.thigh[side]) > _HIGH_DEG
+    return _HIGH_WITHIN_DEG if high else 0.0
 
 
 def at_height(each: LegReference, limbs: LimbDirections, side: Side) -> LegPosition:
@@ -222,5 +241,6 @@ def at_listed_height(name: str) -> str:
     return f"{base} {min(listed, key=lambda each: abs(float(each) - float(height)))}"
 
 
+_EN_L_AIR = ("raised", "arabesque", "attitude")
 _ARABESQUE_DEG = 75.0
 """A straight leg behind is called an arabesque from here on."""

@@ -30,6 +30,7 @@ from enpointe.models.matching import (
     leg_parts,
     limb_error,
     match_of,
+    named_within,
     nearest,
     of_left,
     rms,
@@ -43,7 +44,6 @@ from enpointe.models.style import Style
 from enpointe.notation import (
     ArmsPosition,
     Bend,
-    FloorContact,
     LegPosition,
     PosePosition,
     Side,
@@ -254,9 +254,8 @@ class Recogniser:
             rank = sum(e**2 for e in parts.values()) + touch_penalty(limbs, side, each)
             position = at_height(each, limbs, side)
             if position not in best or rank < best[position][0]:
-                # A toe on the floor that bears nothing is a tendu, whatever the leg's angle.
-                touching = each.touches and limbs.feet[side].floor is FloorContact.TOUCH
-                match = match_of(position, leg_names(position), parts, certain=touching)
+                within = named_within(limbs, side, each)
+                match = match_of(position, leg_names(position), parts, within=within)
                 best[position] = rank, match
         ranked = sorted(best.values(), key=lambda each: each[0])
         return without_doubles(match for _, match in ranked)

@@ -14,7 +14,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from enpointe.models.leg_target import InAir, OnPointe, Standing, ToeOnFloor, ToeOnLeg
+from enpointe.models.leg_target import (
+    LEG_JOINTS,
+    InAir,
+    OnPointe,
+    Passing,
+    Standing,
+    ToeOnFloor,
+    ToeOnLeg,
+)
 from enpointe.models.rules.balance import centroid
 from enpointe.models.target import ArmShape, PoseTarget, turn_tilt_bend
 from enpointe.notation import Side
@@ -96,6 +104,8 @@ def _leg_angles(target: PoseTarget, side: Side) -> dict[str, float]:
         }
     if isinstance(leg, OnPointe):
         return {"hip_turn": 0.85, "knee_bend": 0.02, "ankle_point": 1.4, "toe_raise": -0.14}
+    if isinstance(leg, Passing):
+        return dict(zip(LEG_JOINTS, leg.angles, strict=True))
     pointed = {"hip_turn": 0.85, "ankle_point": 1.3, "toe_raise": -0.26}
     if isinstance(leg, ToeOnFloor):
         return {**pointed, "hip_raise": 0.4 * leg.ahead, "hip_cross": 0.4 * leg.ahead - 0.3}
@@ -158,6 +168,8 @@ def _leg_tasks(model: mujoco.MjModel, target: PoseTarget, side: Side) -> list[mi
     if isinstance(leg, OnPointe):
         tip = leg.footprint.point(figure.ball_forward + figure.toe_length)
         return [_world_task(f"{side}_toe_tip", np.array([*tip, 0.0]), 10.0)]
+    if isinstance(leg, Passing):
+        return []
     if isinstance(leg, InAir):
         tasks: list[mink.Task] = [_point_task(f"{side}_ankle", "pelvis", leg.ankle, 10.0)]
         if leg.knee is not None:

@@ -20,6 +20,9 @@ class Style:
         wrist_deg: Bend of the wrist of a rounded arm. The thesis bends it as much as the elbow
             (§4.4.4); on a hand with fingers, which carry the curve on, that breaks the line, so
             ours is less.
+        wrist_break_deg: How far the hand of a stretched arm lifts, palm down. The thesis has none,
+            and its author finds such arms stiff: most dancers break the wrist slightly, each by her
+            own amount (§4.5.4 b). The amount is ours.
         palm_deg: Turn of the forearm from thumb-forward to the palm that faces along the curve.
             The thesis turns 90 (§4.4.4) and finds it more than its dancers' (§4.5.3 b); 80 is the
             supination of adults (AAOS).
@@ -37,6 +40,7 @@ class Style:
     turnout_deg: float = DEFAULT_TURNOUT_DEG
     elbow_deg: float = ROUNDED_ELBOW_DEG
     wrist_deg: float = 14.0
+    wrist_break_deg: float = 8.0
     palm_deg: float = 80.0
     demi_plie_deg: float = 58.0
     demi_plie_in_fourth_deg: float = 50.0

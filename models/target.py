@@ -82,7 +82,8 @@ class PoseTarget:
         pelvis: The same of the pelvis against the upright that faces `facing`.
         facing: Where the dancer faces, from the audience, + to her left, rad.
         weight: Where the centre of mass should be, (2,), m; None is the middle of the support.
-        com: Where the centre of mass is, (3,), m, in the air; None on the floor.
+        com: Where the centre of mass is, (3,), m, in the air or on its way from foot to foot; None
+            where it rests over the feet.
         real: Whether the dancer has a real dancer's range of motion.
         name: For messages.
     """
@@ -126,9 +127,9 @@ def _kind_of(leg: LegTarget) -> tuple[object, ...]:
     if isinstance(leg, ToeOnLeg):
         return (ToeOnLeg, leg.site)
     if isinstance(leg, InAir):
-        return (InAir, leg.knee is not None, leg.passing)
+        return (InAir, leg.knee is not None)
     if isinstance(leg, Standing):
-        return (Standing, leg.knee_bend > 0)
+        return (Standing, leg.knee_bend > 0, leg.yields)
     return (type(leg),)
 
 
@@ -224,7 +225,8 @@ def _arm(
     wrist = extremity(figure, side, signs.wrist, figure.stretched_arm, source=source)
     shoulder = figure.shoulders[side]
     elbow = shoulder + figure.upper_arm / figure.straight_arm * (wrist - shoulder)
-    return ArmTarget(ArmShape.STRAIGHT, shoulder, wrist, elbow)
+    lifted = -radians(style.wrist_break_deg)
+    return ArmTarget(ArmShape.STRAIGHT, shoulder, wrist, elbow, wrist_bend=lifted)
 
 
 def _angles(orientation: Orientation) -> Vector:

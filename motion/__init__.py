@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from enpointe.motion.interpolation import Choreography as Choreography
     from enpointe.motion.interpolation import interpolate as interpolate
     from enpointe.motion.interpolation import solve_key_poses as solve_key_poses
+    from enpointe.motion.interpolation import ways_of as ways_of
+    from enpointe.motion.keeping import RuleKept as RuleKept
+    from enpointe.motion.keeping import rules_kept as rules_kept
     from enpointe.motion.kind import Interpolation as Interpolation
     from enpointe.motion.motion import Event as Event
     from enpointe.motion.motion import Motion as Motion
@@ -27,12 +30,15 @@ _HOMES = {
     "Interpolation": "enpointe.motion.kind",
     "Motion": "enpointe.motion.motion",
     "PRESETS": "enpointe.motion.effort",
+    "RuleKept": "enpointe.motion.keeping",
     "find_effort": "enpointe.motion.effort",
     "fit_logistic": "enpointe.motion.wrist",
     "interpolate": "enpointe.motion.interpolation",
     "logistic": "enpointe.motion.effort",
+    "rules_kept": "enpointe.motion.keeping",
     "solve_key_poses": "enpointe.motion.interpolation",
     "wrist_profiles": "enpointe.motion.wrist",
+    "ways_of": "enpointe.motion.interpolation",
 }
 
 __all__ = [
@@ -42,11 +48,14 @@ __all__ = [
     "Event",
     "Interpolation",
     "Motion",
+    "RuleKept",
     "find_effort",
     "fit_logistic",
     "interpolate",
     "logistic",
+    "rules_kept",
     "solve_key_poses",
+    "ways_of",
     "wrist_profiles",
 ]
 __getattr__, __dir__ = lazy(__name__, _HOMES)

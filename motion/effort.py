@@ -163,6 +163,14 @@ def logistic(t: ArrayLike, time: float, weight: float) -> NDArray[np.float64]:
     return np.asarray(grown * (1.0 + weight**c) / (grown + weight**c))
 
 
+def logistic_inverse(share: ArrayLike, time: float, weight: float) -> NDArray[np.float64]:
+    """The share of the time at which `logistic` has gone a share of the way, both in [0, 1]."""
+    way: NDArray[np.float64] = np.clip(np.asarray(share, dtype=float), 0.0, 1.0)
+    c = -time
+    grown = way * weight**c / (1.0 + weight**c - way)
+    return np.asarray(grown ** (1.0 / c))
+
+
 def logistic_rate(t: ArrayLike, time: float, weight: float) -> NDArray[np.float64]:
     """dy/dt of `logistic`, 0 outside [0, 1]."""
     phase = np.asarray(t, dtype=float)

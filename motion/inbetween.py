@@ -20,10 +20,10 @@ from enpointe.models.leg_target import LegTarget
 from enpointe.models.rules.balance import centroid
 from enpointe.models.target import ArmShape, ArmTarget, PoseTarget
 from enpointe.motion.arm_path import ArmPath
+from enpointe.motion.contacts import centre_of_mass, leg_paths
 from enpointe.motion.effort import Effort
+from enpointe.motion.grounding import Contact
 from enpointe.motion.inflection import inflected
-from enpointe.motion.leg_path import STEP, LegPath
-from enpointe.motion.slerp import slerp_poses
 from enpointe.notation import Side
 
 __all__ = ["INTERMEDIATE", "Passage", "solve_passage"]
@@ -43,6 +43,8 @@ class Passage:
         between: The solved poses on the way.
         shares: Where on the way all the poses are, start and end included; (P,), from 0 to 1.
         steps: Whether a foot leaves the floor or comes to it on the way.
+        contact: How a foot stands at a share of the way; None where it does not.
+        target: What is asked at a share of the way.
     """
 
     start: KeyPose
@@ -50,6 +52,8 @@ class Passage:
     between: tuple[KeyPose, ...]
     shares: tuple[float, ...]
     steps: bool = False
+    contact: Callable[[Side, float], Contact] = lambda side, share: None
+    target: Callable[[float], PoseTarget] | None = None
 
     @property
     def poses(self) -> tuple[KeyPose, ...]:
@@ -98,11 +102,11 @@ def solve_passage(
     way.plan_contacts()
     before = 0.0
     for share in way.shares[1:-1]:
-        ahead = np.array([(share - before) / (1.0 - before)])
-        pose = solver.solve(way.at(share), slerp_poses(solver.model, guess, end.qpos, ahead)[0])
+        ahead = (share - before) / (1.0 - before)
+        pose = solver.solve(way.at(share), _towards(guess, end.qpos, ahead))
         guess, before = pose.qpos, share
         between.append(pose)
-    return Passage(start, end, tuple(between), way.shares, way.steps)
+    return Passage(start, end, tuple(between), way.shares, way.steps, way.contact, way.at)
 
 
 class _Way:
@@ -131,65 +135,65 @@ class _Way:
             )
             for side in Side
         }
-        self._legs = {side: LegPath(solver.model, side, start, end) for side in Side}
-        if self._stepping:
-            arrives_at, leaves_at = STEP
-            self._legs = {
-                side: replace(path, arrives_at=arrives_at, leaves_at=leaves_at)
-                for side, path in self._legs.items()
-            }
-
-    @property
-    def _stepping(self) -> bool:
-        """Whether the weight goes from foot to foot: one arrives, then the other leaves."""
-        paths = self._legs.values()
-        return (
-            any(path.leaves for path in paths)
-            and any(path.arrives for path in paths)
-            and not any(path.stays for path in paths)
-        )
+        self._legs = leg_paths(solver.model, start, end, effort)
+        self._steps = com is None and any(path.steps for path in self._legs.values())
+        self._yields = com is None and any(path.yields for path in self._legs.values())
+        self._knots = [(0.0, start), (1.0, end)]
 
     @property
     def shares(self) -> tuple[float, ...]:
-        """Where poses are solved; more of them, and the very moments, where a foot steps."""
-        if not self.steps:
+        """Where poses are solved; more of them where a leg is off the floor, and when it steps."""
+        if self._com is not None or all(path.stays for path in self._legs.values()):
             return tuple(np.linspace(0.0, 1.0, INTERMEDIATE + 2))
-        moments = [*np.linspace(0.0, 1.0, 2 * INTERMEDIATE + 3)]
+        clock = next(iter(self._legs.values())).clock
+        moments = [clock.share(t) for t in np.linspace(0.0, 1.0, 2 * INTERMEDIATE + 3)]
         moments += [path.leaves_at for path in self._legs.values() if path.leaves]
         moments += [path.arrives_at for path in self._legs.values() if path.arrives]
         return tuple(np.unique(np.round(moments, 6)))
 
     def plan_contacts(self) -> None:
-        """Solve the poses at which a foot leaves and arrives: the swing's two ends."""
+        """Solve the poses at which feet leave and arrive: the ends of swings."""
         if not self.steps:
             return
-        planned = {}
+        planned: dict[Side, dict[str, KeyPose]] = {side: {} for side in Side}
         for side, path in self._legs.items():
-            lift = (
-                self._contact(side, path.leaves_at, path.leaving(path.leaves_at))
-                if path.leaves
-                else None
+            if path.leaves:
+                planned[side]["lift"] = self._contact(path.leaves_at, side, path.leaving)
+            if path.arrives:
+                planned[side]["touch"] = self._contact(path.arrives_at, side, path.arriving)
+        self._knots.sort(key=lambda knot: knot[0])
+        for side, path in self._legs.items():
+            knots = tuple(self._knots) if self._yields else ()
+            self._legs[side] = replace(
+                path,
+                lift=planned[side].get("lift"),
+                touch=planned[side].get("touch"),
+                knots=knots,
             )
-            touch = (
-                self._contact(side, path.arrives_at, path.arriving(path.arrives_at))
-                if path.arrives
-                else None
-            )
-            planned[side] = replace(path, lift=lift, touch=touch)
-        self._legs = planned
 
-    def _contact(self, side: Side, share: float, standing: LegTarget) -> KeyPose:
-        """The pose at the moment a foot leaves or arrives: still or already in its place."""
+    def _contact(self, share: float, side: Side, standing: Callable[[float], LegTarget]) -> KeyPose:
+        """The pose at the moment a foot leaves or arrives: still or already in its place.
+
+        It is far from both key poses, and the nearest solution to one may be a strained one; the
+        least strained is taken.
+        """
         target = self.at(share)
-        legs = {**target.legs, side: standing}
+        target = replace(target, legs={**target.legs, side: standing(share)})
         ends = self._first.qpos, self._last.qpos
-        guess = slerp_poses(self._solver.model, *ends, np.array([share]))[0]
-        return self._solver.solve(replace(target, legs=legs), guess)
+        midway = _towards(*ends, share)
+        poses = [self._solver.solve(target, guess) for guess in (*ends, midway)]
+        pose = min(poses, key=_strain)
+        self._knots.append((share, pose))
+        return pose
 
     @property
     def steps(self) -> bool:
         """Whether a foot leaves the floor or comes to it while another stays."""
         return self._com is None and any(p.leaves or p.arrives for p in self._legs.values())
+
+    def contact(self, side: Side, share: float) -> Contact:
+        """How a foot stands at a share of the way; None where it does not, or in the air."""
+        return None if self._com is not None else self._legs[side].contact(share)
 
     def at(self, share: float) -> PoseTarget:
         start, end = self._start, self._end
@@ -218,19 +222,42 @@ class _Way:
         )
         if self._com is not None:
             return replace(target, com=self._com(share))
+        if self._steps:
+            return replace(target, com=self._passing_weight(share))
         return replace(target, weight=self._weight(share))
+
+    def _passing_weight(self, share: float) -> Array:
+        """The centre of mass on its way from knot to knot, (3,), m."""
+        knots = sorted(self._knots, key=lambda knot: knot[0])
+        places = [centre_of_mass(self._solver.model, pose.qpos) for _, pose in knots]
+        shares = [at for at, _ in knots]
+        return np.array([np.interp(share, shares, axis) for axis in np.array(places).T])
 
     def _weight(self, share: float) -> Array | None:
         """Where the weight is: over the feet that stay, before others leave and after they come."""
         if len(self._start.support) == 0 or len(self._end.support) == 0:
             return None
-        leaves = [path.leaves_at for path in self._legs.values() if path.leaves]
-        arrives = [path.arrives_at for path in self._legs.values() if path.arrives]
-        low = max(arrives) if arrives else 0.0
-        high = min(leaves) if leaves else 1.0
+        paths = self._legs.values()
+        low = max([path.arrives_at for path in paths if path.arrives], default=0.0)
+        high = min([path.leaves_at for path in paths if path.leaves], default=1.0)
         moved = float(np.clip((share - low) / (high - low), 0.0, 1.0))
         first, last = centroid(self._start.support), centroid(self._end.support)
         return np.asarray((1 - moved) * first + moved * last)
+
+
+def _towards(qpos: Array, end: Array, share: float) -> Array:
+    """A guess on the way to another configuration, (nq,)."""
+    guess = np.asarray((1 - share) * qpos + share * end)
+    if qpos[3:7] @ end[3:7] < 0.0:
+        guess[3:7] = (1 - share) * qpos[3:7] - share * end[3:7]
+    guess[3:7] /= np.linalg.norm(guess[3:7])
+    return guess
+
+
+def _strain(pose: KeyPose) -> tuple[bool, float]:
+    """Whether a pose breaks a rule that it must keep, and how far it is from what it prefers."""
+    wishes = [r for r in pose.certificate.results if not r.must]
+    return not pose.certificate.legal, sum((r.value / r.bound) ** 2 for r in wishes)
 
 
 def _as_solved(model: mujoco.MjModel, pose: KeyPose, side: Side) -> ArmTarget:

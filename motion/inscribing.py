@@ -10,6 +10,7 @@ from fractions import Fraction
 
 import numpy as np
 
+from enpointe.models.matching import NAMED_DEG, leg_names
 from enpointe.models.reading import ReadLeg
 from enpointe.models.recognition import Recognition
 from enpointe.notation import (
@@ -26,6 +27,7 @@ from enpointe.notation import (
 )
 from enpointe.notation.amounts import HEIGHTS, MAX_DEGREES, WIDTHS
 from enpointe.notation.stage import Facing, Turn
+from enpointe.notation.vocabulary import find_pose
 
 __all__ = ["Scribe", "arms_of", "leg_of"]
 
@@ -93,7 +95,8 @@ def leg_of(recognition: Recognition, side: Side) -> Leg:
         if feet is not None:
             return Leg(None, replace(_plain(read.foot), height=HEIGHTS[0]), None, support)
         return Leg(None, None, None, support)
-    if match.named:
+    touching = read.support is not None
+    if match.named and (touching or match.distance < NAMED_DEG):
         assert isinstance(match.position, LegPosition)
         return Leg(match.position, None, None, None)
     return _working(read)
@@ -216,9 +219,12 @@ class Scribe:
         if not (match.named and close) or frame.foot_signs or frame.feet:
             return frame
         assert isinstance(match.position, PosePosition)
-        support = frame.support.get(match.position.support)
-        floor = FloorContact.FLAT if support is None else support.floor
-        if floor is not FloorContact.FLAT:
+        entry = find_pose(match.position.name)
+        assert entry is not None
+        if recognition.signs.legs[match.position.support].support != Support(bend=entry.bend):
+            return frame
+        working = frame.legs.get(match.position.support.other)
+        if working is None or not _alike(working, entry.leg):
             return frame
         head, body = recognition.signs.head, recognition.signs.body
         self._parts |= {"head": _whole_degrees(head), "body": _whole_degrees(body)}
@@ -255,6 +261,12 @@ def _same_leg(leg: Leg, other: Leg) -> bool:
         and _same_sign(leg.foot, other.foot)
         and _same_sign(leg.knee, other.knee)
     )
+
+
+def _alike(leg: LegPosition, other: LegPosition) -> bool:
+    """Whether two names mean the same position, at whatever height."""
+    names, others = (set(leg_names(replace(each, degrees=None))) for each in (leg, other))
+    return bool(names & others)
 
 
 def _same_arms(arms: Arms, other: Arms | None) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -14,18 +14,19 @@ from scipy.signal.windows import parzen
 
 from enpointe.errors import MotionError
 from enpointe.models.keypose import KeyPose, KeyPoseSolver
+from enpointe.models.leg_target import OnPointe, Standing
 from enpointe.models.stances import StanceTracker
 from enpointe.models.style import Style
 from enpointe.models.target import pose_target
-from enpointe.motion.effort import Effort, logistic
-from enpointe.motion.inbetween import Passage, solve_passage
+from enpointe.motion.effort import Effort, find_effort
+from enpointe.motion.grounding import Contact, ground
 from enpointe.motion.kind import Interpolation
 from enpointe.motion.motion import Event, Motion
-from enpointe.motion.slerp import slerp_poses
 from enpointe.motion.stations import Station, build_stations
-from enpointe.notation import Score
+from enpointe.motion.ways import Ways
+from enpointe.notation import Score, Side
 
-__all__ = ["Choreography", "interpolate", "solve_key_poses"]
+__all__ = ["COUNT_IN", "Choreography", "interpolate", "solve_key_poses", "ways_of"]
 
 Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
@@ -122,6 +123,7 @@ def interpolate(
     effort: Effort,
     kind: Interpolation = Interpolation.EXPRESSIVE,
     *,
+    ways: Ways | None = None,
     progress: Progress | None = None,
 ) -> Motion:
     """Fill in the movement between the key poses.
@@ -130,6 +132,7 @@ def interpolate(
         choreography: The solved score.
         effort: Quality of the movement.
         kind: Expressive, or a baseline.
+        ways: Those of `ways_of` with the same arguments, where they are wanted afterwards.
         progress: Called with (done, all).
 
     Returns:
@@ -143,22 +146,24 @@ def interpolate(
     model = choreography.solver.model
     qpos = np.empty((count, model.nq))
     qpos[:] = stations[0].pose.qpos
-    curves = _Curves(choreography, effort, kind)
-
-    def timing(phase: Array) -> Array:
-        return logistic(phase, effort.time, effort.weight)
+    ways = ways or ways_of(choreography, effort, kind)
+    contacts: dict[Side, list[Contact]] = {side: [None] * count for side in Side}
 
     for i, (begin, end) in enumerate(pairwise(times)):
         inside = (time >= begin) & (time <= end)
         phase = (time[inside] - begin) / (end - begin)
-        law = stations[i + 1].law
-        share = phase if kind is Interpolation.SLERP else law.share(phase, timing)
-        qpos[inside] = curves(i)(share)
+        share = ways.shares(i, phase)
+        way = ways[i]
+        qpos[inside] = way.curve(share)
         qpos[time > end] = stations[i + 1].pose.qpos
+        for side in Side:
+            for sample, gone in zip(np.flatnonzero(inside), share, strict=True):
+                contacts[side][sample] = way.contact(side, float(gone))
         if progress is not None:
             progress(i + 1, len(stations) - 1)
     if kind is not Interpolation.SLERP:
-        qpos = _round_corners(model, qpos)
+        _hold(contacts, stations, time, times)
+        qpos = ground(model, time, _round_corners(model, qpos), contacts)
     events = [
         Event(float(t), "key pose", pose.name, float(frame.beat))
         for t, pose, frame in zip(
@@ -170,40 +175,49 @@ def interpolate(
     )
 
 
-class _Curves:
-    """The way between each pair of key poses; a repeated pair is solved once."""
+def ways_of(
+    choreography: Choreography,
+    effort: Effort,
+    kind: Interpolation = Interpolation.EXPRESSIVE,
+    *,
+    phrased: bool = False,
+) -> Ways:
+    """The ways between the stations of a choreography, to be solved one by one.
 
-    def __init__(self, choreography: Choreography, effort: Effort, kind: Interpolation) -> None:
-        self._choreography = choreography
-        self._kind = kind
-        direct = Effort(effort.time, effort.weight, 1.0)
-        self._effort = effort if kind is Interpolation.EXPRESSIVE else direct
-        self._known: dict[tuple[bytes, bytes], Callable[[Array], Array]] = {}
-
-    def __call__(self, index: int) -> Callable[[Array], Array]:
-        start, end = self._choreography.stations[index : index + 2]
-        key = (start.pose.qpos.tobytes(), end.pose.qpos.tobytes())
-        if key not in self._known:
-            self._known[key] = self._make(start.pose, end.pose, end)
-        return self._known[key]
-
-    def _make(self, start: KeyPose, end: KeyPose, station: Station) -> Callable[[Array], Array]:
-        solver = self._choreography.solver
-        if self._kind is Interpolation.SLERP:
-            return lambda share: slerp_poses(solver.model, start.qpos, end.qpos, share)
-        inflect = self._kind is Interpolation.EXPRESSIVE
-        passage: Passage = solve_passage(
-            solver, start, end, self._effort, inflect=inflect, com=_flown(station)
-        )
-        return passage.curve(solver.model)
+    Args:
+        choreography: The solved score.
+        effort: Quality of the movement.
+        kind: Expressive, or a baseline.
+        phrased: Whether a phrase of the score that is marked with a quality is danced in its own.
+    """
+    stations = choreography.stations
+    efforts = [effort] * (len(stations) - 1)
+    if phrased:
+        efforts = [_own_effort(choreography, i, effort) for i in range(1, len(stations))]
+    return Ways(choreography.solver, stations, efforts, kind)
 
 
-def _flown(station: Station) -> Callable[[float], Array] | None:
-    """The centre of mass on the way to a station, for one reached through the air."""
-    if station.flight is None:
-        return None
-    flight, (first, last) = station.flight, station.span
-    return lambda share: flight.at((1 - share) * first + share * last)
+def _own_effort(choreography: Choreography, station: int, effort: Effort) -> Effort:
+    """The quality of the way to a station: that of the phrase in which its next frame is."""
+    frame = next(s.frame for s in choreography.stations[station:] if s.frame is not None)
+    beat = choreography.score.frames[frame].beat
+    for phrase in choreography.score.phrases:
+        if phrase.effort is not None and phrase.start < beat <= phrase.end:
+            return find_effort(phrase.effort)[0]
+    return effort
+
+
+def _hold(
+    contacts: dict[Side, list[Contact]], stations: Sequence[Station], time: Array, times: Array
+) -> None:
+    """Before the first station and after the last its feet stand as they do there."""
+    for station, samples in (
+        (stations[0], np.flatnonzero(time <= times[0])),
+        (stations[-1], np.flatnonzero(time >= times[-1])),
+    ):
+        for side, leg in station.pose.target.legs.items():
+            for sample in samples:
+                contacts[side][sample] = leg if isinstance(leg, Standing | OnPointe) else None
 
 
 def _round_corners(model: mujoco.MjModel, qpos: Array) -> Array:

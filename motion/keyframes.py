@@ -7,20 +7,20 @@ goes on in another direction.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
-from scipy.signal import find_peaks
+from scipy.signal import find_peaks, peak_prominences
 
-from enpointe.models.footing import footing
+from enpointe.models.footing import footing, lowest_sole
 from enpointe.models.joints import Joints
 from enpointe.models.limbs import orientation
 from enpointe.notation import Side
 
-__all__ = ["Flight", "KeyMoment", "MotionOutline", "key_moments"]
+__all__ = ["LEAST_SPACING", "Flight", "KeyMoment", "MotionOutline", "key_moments"]
 
 Array = NDArray[np.float64]
 _SMOOTHING = 0.025
@@ -36,13 +36,15 @@ _SLIGHT_PAUSE = 0.8
 _LIMB_PAUSE = 0.35
 _LIMB_MOVES = 0.12
 """Slower than this, m/s, a limb is not taken to have been on its way at all."""
-_LEAST_SPACING = 0.15
+LEAST_SPACING = 0.15
 """Closest key moments, s: a third of a beat at the pace of an allegro."""
 _SHORTEST_HOLD = 0.5
 """A stillness shorter than this, s, is a pause and not a hold."""
 _SLOW_START = 0.15
 """Neither is one shorter than this share of the movement that follows, which may start too slowly
 to be seen."""
+_CLEAR = 0.01
+"""Soles higher than this, m, are off the floor next to a moment that is in the air for certain."""
 _HEAD = 0.25
 _TRUNK = 0.5
 """Radii at which the turns of head and trunk count as ways, m."""
@@ -53,8 +55,8 @@ class Flight:
     """A time in the air.
 
     Attributes:
-        start: s.
-        end: s.
+        start: The last moment on the floor, s.
+        end: The first moment back on it, s.
     """
 
     start: float
@@ -101,12 +103,7 @@ class MotionOutline:
         # Where a plie or a jump turns: it slows nothing else down.
         self.speeds["rise"] = self._speed(np.array([j.com[2] for j in joints]))
         self.turned = np.unwrap([np.radians(orientation(j.pelvis).turn) for j in joints])
-        aloft = [all(foot.floor is None for foot in footing(j).values()) for j in joints]
-        self.flights = tuple(
-            Flight(float(time[a]), float(time[b - 1]))
-            for a, b in _runs(np.array(aloft))
-            if b > a + 1
-        )
+        self.flights = tuple(_flights(time, joints))
 
     @property
     def still(self) -> NDArray[np.bool_]:
@@ -126,7 +123,7 @@ def key_moments(outline: MotionOutline) -> tuple[KeyMoment, ...]:
         At least the first and the last moment.
     """
     time, still = outline.time, outline.still
-    moving = [(a, b) for a, b in _runs(~still) if time[b - 1] - time[a] > _LEAST_SPACING]
+    moving = [(a, b) for a, b in _runs(~still) if time[b - 1] - time[a] > LEAST_SPACING]
     if not moving:
         return (KeyMoment(float(time[0]), True, 1.0), KeyMoment(float(time[-1]), False, 1.0))
     moments: list[KeyMoment] = []
@@ -147,7 +144,11 @@ def key_moments(outline: MotionOutline) -> tuple[KeyMoment, ...]:
 
 def _pauses(speed: Array, below: float) -> list[tuple[int, float]]:
     """Where a speed dips between two peaks to less than a share of the lower one, and how deep."""
-    peaks, _ = find_peaks(np.concatenate([[0.0], speed, [0.0]]))
+    padded = np.concatenate([[0.0], speed, [0.0]])
+    peaks, _ = find_peaks(padded)
+    # A ripple in a slow stretch is no peak: nothing beside it would count as a pause.
+    high = peak_prominences(padded, peaks)[0] > (1.0 - _SLIGHT_PAUSE) * padded[peaks]
+    peaks = peaks[high]
     found = []
     for before, after in zip(peaks[:-1] - 1, peaks[1:] - 1, strict=True):
         low = before + int(np.argmin(speed[before : after + 1]))
@@ -158,7 +159,7 @@ def _pauses(speed: Array, below: float) -> list[tuple[int, float]]:
 
 
 def _spaced(found: Sequence[tuple[float, float]], start: float, end: float) -> list[KeyMoment]:
-    """The most marked moments first, none closer to another than `_LEAST_SPACING`.
+    """The most marked moments first, none closer to another than `LEAST_SPACING`.
 
     Args:
         found: Times, and how marked each is, with 1 added where everything pauses.
@@ -168,7 +169,7 @@ def _spaced(found: Sequence[tuple[float, float]], start: float, end: float) -> l
     kept: list[KeyMoment] = []
     taken = [start, end]
     for time, depth in sorted(found, key=lambda each: -each[1]):
-        if all(abs(time - other) >= _LEAST_SPACING for other in taken):
+        if all(abs(time - other) >= LEAST_SPACING for other in taken):
             kept.append(KeyMoment(time, False, min(depth, 1.0), depth > 1.0))
             taken.append(time)
     return sorted(kept, key=lambda each: each.time)
@@ -191,6 +192,15 @@ def _relative(joints: Sequence[Joints], end: str, root: str, frame: str) -> Arra
 def _axes(rotation: Array) -> Array:
     """Two of the axes that a rotation carries along: how they move is how fast it turns."""
     return np.asarray(rotation[:, (0, 2)] / np.sqrt(2.0))
+
+
+def _flights(time: Array, joints: Sequence[Joints]) -> Iterator[Flight]:
+    """The times in the air: off the floor for certain somewhere, and from there as far as clear."""
+    aloft = np.array([all(foot.floor is None for foot in footing(j).values()) for j in joints])
+    clear = np.array([lowest_sole(j) > _CLEAR for j in joints])
+    for a, b in _runs(clear | aloft):
+        if aloft[a:b].sum() > 1:
+            yield Flight(float(time[max(a - 1, 0)]), float(time[min(b, len(time) - 1)]))
 
 
 def _runs(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:

@@ -1,15 +1,15 @@
 """The way of a leg from one key pose to the next: standing, leaving the floor, swinging, arriving.
 
 A leg that stands before and after on the same place stays, and rises or bends by degrees. One that
-leaves first gives up its weight, then swings: thigh and shank each take the shortest arc, so that a
-straight leg stays straight and a developpe unfolds. One that arrives swings first and takes weight
-then. The ballet rules hold the rest: foot above the floor, pointed as soon as it can, turned out.
+leaves first gives up its weight, then swings. One that arrives swings first and takes weight then.
+The ballet rules hold the rest: foot above the floor, legs clear of each other.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import acos, radians, sin
+from functools import cached_property
+from math import radians
 
 import mujoco
 import numpy as np
@@ -20,26 +20,28 @@ from enpointe.models.keypose import KeyPose
 from enpointe.models.leg_target import (
     DEMI_POINTE_DEG,
     FOOT_JOINTS,
+    LEG_JOINTS,
     POINTED_DEG,
-    InAir,
     LegTarget,
     OnPointe,
+    Passing,
     Standing,
 )
+from enpointe.motion.clock import Clock
+from enpointe.motion.leg_swing import LegSwing, leg_angles
 from enpointe.notation import Side
 
-__all__ = ["STEP", "LegPath"]
+__all__ = ["LegPath"]
 
 Vector = NDArray[np.float64]
-POINTED_ABOVE = 0.10
-"""How much higher than a standing one an ankle must be for a foot to be fully pointed under it, m:
-in a tendu it is about so high."""
 STRETCH = 0.4
 """Share of a flight in which a foot stretches, or gives itself up to the floor again."""
-WEIGHT_SHIFT = 0.25
-"""Share of a passage in which weight moves before a foot leaves, or after it arrives."""
-STEP = (0.4, 0.6)
-"""Shares of a step, from one foot to the other, at which the one arrives and the other leaves."""
+ROLL_DEG = 35.0
+"""How far the heel is raised from the floor as a foot steps off it or on to it: a dancer's foot
+rolls through, by toes, ball and heel."""
+
+
+EVEN = Clock()
 
 
 @dataclass(frozen=True)
@@ -55,16 +57,29 @@ class LegPath:
         arrives_at: Share at which a foot that arrives is on it.
         lift: The pose at the moment the foot leaves: still on the floor, the weight gone from it.
         touch: The pose at the moment it arrives: on the floor, the weight not yet on it.
+        slides: Shares of the passage between which a foot that stays is moved to its new place.
+        yields: Whether heel and knee of a standing leg give way to a passing weight.
+        steps: Whether the weight goes with a step or a slide, falling from foot to foot, so that
+            feet roll off and on; otherwise it is over the feet at every moment.
+        clock: Of the passage: a foot that steps is timed by the floor under it, not by the quality
+            of the movement.
+        knots: Shares of the passage and poses that are solved already: between them heel and knee
+            of a leg that yields go by degrees.
     """
 
     model: mujoco.MjModel
     side: Side
     start: KeyPose
     end: KeyPose
-    leaves_at: float = WEIGHT_SHIFT
-    arrives_at: float = 1.0 - WEIGHT_SHIFT
+    leaves_at: float = 0.0
+    arrives_at: float = 1.0
     lift: KeyPose | None = None
     touch: KeyPose | None = None
+    slides: tuple[float, float] = (0.0, 1.0)
+    yields: bool = False
+    steps: bool = False
+    clock: Clock = EVEN
+    knots: tuple[tuple[float, KeyPose], ...] = ()
 
     @property
     def before(self) -> LegTarget:
@@ -89,49 +104,77 @@ class LegPath:
 
     def swing(self, share: float) -> float:
         """How far the swing is at `share` of the passage: 0 still standing, 1 arrived."""
-        low = self.leaves_at if self.leaves else 0.0
-        high = self.arrives_at if self.arrives else 1.0
-        return float(np.clip((share - low) / (high - low), 0.0, 1.0))
+        low, high = self._window
+        begin, end = self.clock.moment(low), self.clock.moment(high)
+        return float(np.clip((self.clock.moment(share) - begin) / (end - begin), 0.0, 1.0))
+
+    @property
+    def _window(self) -> tuple[float, float]:
+        """Shares of the passage between which the leg swings."""
+        return self.leaves_at if self.leaves else 0.0, self.arrives_at if self.arrives else 1.0
+
+    def _meanwhile(self, swing: float) -> float:
+        """How far the rest of the body is between the two ends of the swing."""
+        low, high = self._window
+        begin, end = self.clock.moment(low), self.clock.moment(high)
+        share = self.clock.share(begin + swing * (end - begin))
+        return (share - low) / (high - low)
 
     def at(self, share: float, *, aloft: bool = False) -> LegTarget:
         """What the leg is asked at `share` of the passage, on the floor or `aloft`."""
         if aloft:
-            return self._swinging(share, aloft=True)
+            return self._aloft(share)
+        return self.contact(share) or Passing(self._swing.at(self.swing(share)))
+
+    def contact(self, share: float) -> Standing | OnPointe | None:
+        """How the foot stands at `share` of a passage on the floor; None where it does not."""
         if self.stays:
             return self._standing(share)
-        swing = self.swing(share)
-        if swing <= 0.0 and self.leaves:
+        if self.leaves and share <= self.leaves_at:
             return self.leaving(share)
-        if swing >= 1.0 and self.arrives:
+        if self.arrives and share >= self.arrives_at:
             return self.arriving(share)
-        return self._swinging(swing)
+        return None
 
-    def leaving(self, share: float) -> LegTarget:
+    def leaving(self, share: float) -> Standing | OnPointe:
         """The stance before, turned about its ball as far as the body has turned by then."""
-        return self._pivoted(self.before, share)
+        return self._pivoted(self.before, share, share)
 
-    def arriving(self, share: float) -> LegTarget:
+    def arriving(self, share: float) -> Standing | OnPointe:
         """The stance after, turned about its ball by what the body has still to turn."""
-        return self._pivoted(self.after, share - 1.0)
+        return self._pivoted(self.after, share, share - 1.0)
 
-    def _pivoted(self, leg: LegTarget, share: float) -> LegTarget:
-        footprint = _print(leg)
-        turn = share * (self.end.target.facing - self.start.target.facing)
-        if footprint is None or turn == 0.0:
+    @property
+    def travels(self) -> float:
+        """How far the ball of a foot that stays is moved, m."""
+        before, after = _print(self.before), _print(self.after)
+        if before is None or after is None:
+            return 0.0
+        ball = self.start.target.figure.ball_forward
+        return float(np.linalg.norm(after.point(ball) - before.point(ball)))
+
+    def _pivoted(self, leg: LegTarget, share: float, turned: float) -> Standing | OnPointe:
+        if isinstance(leg, Standing) and self.yields:
+            rise, bend = self._yielding(share, leg.rise, leg.knee_bend)
+            leg = replace(leg, yields=True, rise=rise, knee_bend=bend)
+        turn = turned * (self.end.target.facing - self.start.target.facing)
+        assert isinstance(leg, Standing | OnPointe)
+        if turn == 0.0:
             return leg
         ball = self.start.target.figure.ball_forward
-        pivot = footprint.point(ball)
-        foot = Footprint(pivot, footprint.direction + turn)
-        assert isinstance(leg, Standing | OnPointe)
+        pivot = leg.footprint.point(ball)
+        foot = Footprint(pivot, leg.footprint.direction + turn)
         return replace(leg, footprint=Footprint(foot.point(-ball), foot.direction))
 
-    def _standing(self, share: float) -> LegTarget:
+    def _standing(self, share: float) -> Standing | OnPointe:
         footprint = _print(self.before)
         turned = _print(self.after)
         assert footprint is not None and turned is not None
+        low, high = self.slides
+        moved = float(np.clip((share - low) / (high - low), 0.0, 1.0))
         direction = (1 - share) * footprint.direction + share * turned.direction
         ball = self.start.target.figure.ball_forward
-        pivot = (1 - share) * footprint.point(ball) + share * turned.point(ball)
+        pivot = (1 - moved) * footprint.point(ball) + moved * turned.point(ball)
         foot = Footprint(pivot, direction)
         place = Footprint(foot.point(-ball), direction)
         if isinstance(self.before, OnPointe) and isinstance(self.after, OnPointe):
@@ -139,44 +182,55 @@ class LegPath:
             return OnPointe(place, bend)
         rise = (1 - share) * _rise(self.before) + share * _rise(self.after)
         bend = (1 - share) * _bend(self.before) + share * _bend(self.after)
-        return Standing(place, rise, bend)
+        if self.yields:
+            rise, bend = self._yielding(share, rise, bend)
+        return Standing(place, rise, bend, self.yields)
 
-    def _swinging(self, swing: float, *, aloft: bool = False) -> InAir:
-        thigh0, shank0 = _directions(self.model, self.lift or self.start, self.side)
-        thigh1, shank1 = _directions(self.model, self.touch or self.end, self.side)
-        figure = self.start.target.figure
-        hip = figure.hips[self.side]
-        knee = hip + figure.thigh * _arc(thigh0, thigh1, swing)
-        ankle = knee + figure.shank * _arc(shank0, shank1, swing)
-        turnout = getattr(self.after, "turnout", getattr(self.before, "turnout", radians(60.0)))
-        foot = self._foot_aloft(swing) if aloft else self._foot(swing, float(ankle[2]))
-        return InAir(ankle, knee, turnout, foot=foot)
-
-    def _foot_aloft(self, share: float) -> Vector:
-        """Angles of the foot in a flight: soon stretched, and given up before landing."""
-        joints = [self.model.joint(f"{self.side}_{j}").qposadr[0] for j in FOOT_JOINTS]
-        pose, far = (self.start, share) if share < 0.5 else (self.end, 1.0 - share)
-        own = pose.qpos[joints]
-        return np.asarray(own + min(far / STRETCH, 1.0) * (np.radians(POINTED_DEG) - own))
-
-    def _foot(self, swing: float, ankle: float) -> Vector:
-        """Angles of the foot: flat where the ankle is as low as a standing one's, pointed above.
-
-        Args:
-            swing: How far the swing is.
-            ankle: Height of the ankle against the hips, m.
-        """
-        first, last = self.lift or self.start, self.touch or self.end
-        hips = (1 - swing) * first.qpos[2] + swing * last.qpos[2]
-        lifted = (hips + ankle - self.start.target.figure.ankle_height) / POINTED_ABOVE
-        contact = self.lift if swing < 0.5 or self.touch is None else self.touch
-        flat = np.zeros(len(FOOT_JOINTS))
-        if contact is not None:
-            joints = [self.model.joint(f"{self.side}_{j}").qposadr[0] for j in FOOT_JOINTS]
-            flat = contact.qpos[joints]
-        return np.asarray(
-            flat + float(np.clip(lifted, 0.0, 1.0)) * (np.radians(POINTED_DEG) - flat)
+    def _yielding(self, share: float, rise: float, bend: float) -> tuple[float, float]:
+        """Rise and bend (rad) wished of a leg that yields: between the knots by degrees."""
+        knots = [(at, pose) for at, pose in self.knots if self._stands(at)]
+        if len(knots) < 2:
+            rolls = 0.0 < share < 1.0 and self.steps
+            return (max(rise, radians(ROLL_DEG)) if rolls else rise), bend
+        shares = [at for at, _ in knots]
+        angles = np.array([leg_angles(self.model, pose.qpos, self.side) for _, pose in knots])
+        knee, toe = LEG_JOINTS.index("knee_bend"), LEG_JOINTS.index("toe_raise")
+        return (
+            max(float(np.interp(share, shares, angles[:, toe])), 0.0),
+            max(float(np.interp(share, shares, angles[:, knee])), 0.0),
         )
+
+    def _stands(self, share: float) -> bool:
+        if self.leaves:
+            return share <= self.leaves_at
+        return self.stays or (self.arrives and share >= self.arrives_at)
+
+    @cached_property
+    def _swing(self) -> LegSwing:
+        start, end = self.lift or self.start, self.touch or self.end
+        return LegSwing(self.model, self.side, start.qpos, end.qpos, body=self._meanwhile)
+
+    def _aloft(self, share: float) -> Passing:
+        """A leg in a flight: its foot stretches on the way up, and is given up on the way down.
+
+        In a flight from floor to floor without a pose between it stretches and is given up again.
+        """
+        angles = self._flight.at(share)
+        foot = angles[-len(FOOT_JOINTS) :]
+        ends = [leg_angles(self.model, pose.qpos, self.side) for pose in (self.start, self.end)]
+        if not any(_pointed(end) for end in ends):
+            far = min(share, 1.0 - share) / STRETCH
+            foot += min(far, 1.0) * (np.radians(POINTED_DEG) - foot)
+        return Passing(angles)
+
+    @cached_property
+    def _flight(self) -> LegSwing:
+        return LegSwing(self.model, self.side, self.start.qpos, self.end.qpos, floor=False)
+
+
+def _pointed(angles: Vector) -> bool:
+    foot = angles[-len(FOOT_JOINTS) :]
+    return bool(np.abs(foot - np.radians(POINTED_DEG)).max() < radians(5.0))
 
 
 def _print(leg: LegTarget) -> Footprint | None:
@@ -192,21 +246,3 @@ def _rise(leg: LegTarget) -> float:
 def _bend(leg: LegTarget) -> float:
     assert isinstance(leg, Standing | OnPointe)
     return leg.knee_bend
-
-
-def _directions(model: mujoco.MjModel, pose: KeyPose, side: Side) -> tuple[Vector, Vector]:
-    """Unit directions of thigh and shank of a solved pose, in the pelvis' frame as written."""
-    data = mujoco.MjData(model)
-    data.qpos[:] = pose.qpos
-    mujoco.mj_kinematics(model, data)
-    upright = pose.target.upright
-    hip, knee, ankle = (data.site(f"{side}_{s}").xpos for s in ("hip", "knee", "ankle"))
-    thigh, shank = upright.T @ (knee - hip), upright.T @ (ankle - knee)
-    return thigh / np.linalg.norm(thigh), shank / np.linalg.norm(shank)
-
-
-def _arc(first: Vector, last: Vector, share: float) -> Vector:
-    angle = acos(float(np.clip(first @ last, -1.0, 1.0)))
-    if angle < 1e-6:
-        return last
-    return np.asarray((sin((1 - share) * angle) * first + sin(share * angle) * last) / sin(angle))

@@ -17,8 +17,15 @@ from enpointe.models.joints import Joints
 from enpointe.models.recognition import Recogniser, Recognition, recogniser_of
 from enpointe.models.stances import StanceTracker
 from enpointe.motion.beats import Pulse, find_pulse, on_the_beat
+from enpointe.motion.in_flight import TOUCH, in_flight, is_position, landed
 from enpointe.motion.inscribing import Scribe
-from enpointe.motion.keyframes import Flight, KeyMoment, MotionOutline, key_moments
+from enpointe.motion.keyframes import (
+    LEAST_SPACING,
+    Flight,
+    KeyMoment,
+    MotionOutline,
+    key_moments,
+)
 from enpointe.motion.motion import Motion
 from enpointe.notation import Frame, Jump, Score, Side, StagePlace, Travel
 
@@ -26,9 +33,6 @@ __all__ = ["NotatedFrame", "NotatedMotion", "notate", "read_motion"]
 
 _RATE = 50.0
 """Samples a second that are looked at."""
-_POSITION_WITHIN = 4.5
-_FEET_WITHIN = 3.0
-"""An unsure moment is written if its pose is a named one within these, degrees and cm."""
 _TRAVEL = 0.12
 """Least way on the stage that is written, m: half a foot's length."""
 
@@ -94,8 +98,8 @@ def read_motion(
     outline = MotionOutline(time, [Joints.of(motion.model, pose) for pose in qpos])
     if outline.still.all():
         raise MotionError(f"nothing moves in {motion.name}; a score needs two poses at least")
-    moments = _positions(key_moments(outline), motion, recogniser)
-    pulse = find_pulse([moment.time for moment, _ in moments], tempo)
+    moments = _positions(outline, motion, recogniser)
+    pulse = find_pulse(_marked([moment for moment, _ in moments]), tempo)
     scribe = Scribe()
     kept: list[tuple[KeyMoment, Recognition]] = []
     for beat, moment, recognition in _on_beats(moments, pulse):
@@ -114,18 +118,29 @@ def read_motion(
 
 
 def _positions(
-    moments: Sequence[KeyMoment], motion: Motion, recogniser: Recogniser
+    outline: MotionOutline, motion: Motion, recogniser: Recogniser
 ) -> list[tuple[KeyMoment, Recognition]]:
     """The moments to write, each with its pose: unsure ones only where the pose has a name."""
-    found = []
-    for moment in moments:
-        recognition = recogniser.recognise(motion.sample(moment.time)[0])
-        feet = recognition.feet
-        near = feet is None or feet.distance < _FEET_WITHIN
-        near = near and recognition.distance < _POSITION_WITHIN
-        if moment.sure or (recognition.named and near):
-            found.append((moment, recognition))
-    return found
+
+    def pose_at(time: float) -> Recognition:
+        pose = recogniser.recognise(motion.sample(time)[0])
+        landing = any(flight.end <= time <= flight.end + TOUCH for flight in outline.flights)
+        return landed(pose) if landing else pose
+
+    found = [(moment, pose_at(moment.time)) for moment in key_moments(outline)]
+    kept = [(moment, pose) for moment, pose in found if moment.sure]
+    unsure = [*in_flight(outline, pose_at), *(each for each in found if not each[0].sure)]
+    for moment, pose in unsure:
+        apart = min(abs(moment.time - other.time) for other, _ in kept)
+        if apart >= LEAST_SPACING and (moment.sure or is_position(pose)):
+            kept.append((moment, pose))
+    return sorted(kept, key=lambda each: each[0].time)
+
+
+def _marked(moments: Sequence[KeyMoment]) -> list[float]:
+    """The times that say what the pulse is: those of pauses, if there are enough."""
+    sure = [moment.time for moment in moments if moment.sure]
+    return sure if len(sure) > 2 else [moment.time for moment in moments]
 
 
 def _on_beats(

@@ -88,7 +88,7 @@ def _travel(travel: Travel) -> Iterator[Mark]:
     way = "straight" if not travel.curve else "left" if travel.curve > 0 else "right"
     mark = between(f"travel {way}", (-x / 2, -y / 2), (x / 2, y / 2))
     yield mark
-    amount = f"{round(travel.metres, 1):g} m"
+    amount = f"{round(travel.metres, 2):g} m"
     beside = mark.box.right + 0.12
     yield words(amount, beside, 0.2, _AMOUNT_SIZE, name="amount")
 

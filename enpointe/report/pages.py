@@ -35,7 +35,7 @@ from enpointe.report.blocks import (
     Verbatim,
     data_uri,
 )
-from enpointe.report.certificates import certificate_tables
+from enpointe.report.certificates import certificate_tables, rules_sections
 from enpointe.report.chart import GREY, LEFT, RIGHT
 from enpointe.report.films import FilmFile
 from enpointe.report.ground import force_chart, margin_chart, support_chart
@@ -116,6 +116,7 @@ def performance_page(performance: Performance, material: Material) -> Page:
         _wrist_section(ways, series, performance.effort),
         Section("effort", "Effort asked, and what came out", (_effort_table(performance),)),
         *_physics_sections(performance),
+        *rules_sections(performance.rules),
         _certificate_section(choreography.key_poses),
     ]
     return Page(

@@ -2,7 +2,15 @@
 
 from __future__ import annotations
 
-from enpointe.models.leg_target import InAir, LegTarget, OnPointe, Standing, ToeOnFloor, ToeOnLeg
+from enpointe.models.leg_target import (
+    InAir,
+    LegTarget,
+    OnPointe,
+    Passing,
+    Standing,
+    ToeOnFloor,
+    ToeOnLeg,
+)
 from enpointe.models.rules.arms import (
     ElbowOnItsSign,
     ElbowOnTheSlope,
@@ -18,6 +26,7 @@ from enpointe.models.rules.balance import (
     CentredWeight,
     ComInFlight,
     ComOverSupport,
+    WeightOnItsWay,
     WeightOverTheFoot,
 )
 from enpointe.models.rules.base import Kind as Kind
@@ -31,6 +40,8 @@ from enpointe.models.rules.feet import (
     FootOnItsWayToPoint,
     FootRaised,
     FootTurnout,
+    FootYields,
+    HeelAboveTheFloor,
     OnTheTip,
     PointedFoot,
     ToesFlat,
@@ -39,10 +50,11 @@ from enpointe.models.rules.feet import (
 from enpointe.models.rules.hip import REAL_ROTATION_DEG, HipExtension, HipRotation
 from enpointe.models.rules.legs import (
     FootOnItsSign,
-    FootOnItsWay,
     KneeBend,
     KneeOnItsSign,
     KneeOverToe,
+    KneeYields,
+    LegOnItsWay,
     LegTurnedOut,
     StretchedKnee,
     ToeAtTheLeg,
@@ -72,12 +84,12 @@ def rules_for(target: PoseTarget) -> tuple[Rule, ...]:
             rules += [HipRotation(side, REAL_ROTATION_DEG), HipExtension(side)]
         else:
             rules.append(HipRotation(side))
+    bearing = sum(isinstance(leg, Standing | OnPointe) for leg in target.legs.values())
     if target.com is not None:
-        rules.append(ComInFlight())
+        rules.append(WeightOnItsWay() if bearing else ComInFlight())
     else:
-        bearing = sum(isinstance(leg, Standing | OnPointe) for leg in target.legs.values())
         rules += [ComOverSupport(), CentredWeight() if bearing > 1 else WeightOverTheFoot()]
-    if all(isinstance(leg, Standing) for leg in target.legs.values()):
+    if all(isinstance(leg, Standing) and not leg.yields for leg in target.legs.values()):
         rules.append(FeetTurnedOutAlike())
     lifted = tuple(side for side, leg in target.legs.items() if isinstance(leg, InAir | ToeOnLeg))
     return (*rules, LegsApart(), ArmsClearOfLegs(lifted), ArmsClearOfTheBody())
@@ -111,21 +123,16 @@ def _leg_rules(leg: LegTarget, side: Side) -> list[Rule]:
             BallOnItsMark(side),
             ToesFlat(side),
             FootTurnout(side),
-            FootRaised(side),
-            KneeBend(side),
             TurnoutAtTheHip(side),
         ]
+        if leg.yields:
+            return [*rules, FootYields(side), KneeYields(side), HeelAboveTheFloor(side)]
+        rules += [FootRaised(side), KneeBend(side)]
         return [*rules, KneeOverToe(side)] if leg.knee_bend > 0 else rules
     if isinstance(leg, OnPointe):
         return [OnTheTip(side), FootTurnout(side), KneeBend(side), TurnoutAtTheHip(side)]
-    if isinstance(leg, InAir) and leg.passing:
-        return [
-            FootOnItsWay(side),
-            KneeOnItsSign(side),
-            FootOnItsWayToPoint(side),
-            FootAboveTheFloor(side),
-            LegTurnedOut(side),
-        ]
+    if isinstance(leg, Passing):
+        return [LegOnItsWay(side), FootOnItsWayToPoint(side), FootAboveTheFloor(side)]
     rules = [PointedFoot(side), LegTurnedOut(side)]
     if isinstance(leg, ToeOnFloor):
         return [ToeOnTheFloor(side), ToeAway(side), *rules]

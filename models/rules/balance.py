@@ -16,6 +16,7 @@ __all__ = [
     "CentredWeight",
     "ComInFlight",
     "ComOverSupport",
+    "WeightOnItsWay",
     "WeightOverTheFoot",
     "centroid",
     "half_planes",
@@ -98,6 +99,16 @@ class ComInFlight(Rule):
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
         assert target.com is not None
         return {"com": target.com}
+
+
+class WeightOnItsWay(ComInFlight):
+    """In a step the weight passes from foot to foot and is over neither on its way: a wish."""
+
+    name: ClassVar[str] = "weight on its way"
+    bound: ClassVar[float] = 80.0
+    kind: ClassVar[Kind] = Kind.PREFER
+    weight: ClassVar[float] = 200.0
+    source: ClassVar[str] = "Neagle 2005 §5.2.1 (shortest path), for the centre of mass"
 
 
 def half_planes(hull: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

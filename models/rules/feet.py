@@ -12,7 +12,13 @@ from numpy.typing import NDArray
 
 from enpointe.models.foot_positions import Footprint
 from enpointe.models.kinematics import SymbolicBody
-from enpointe.models.leg_target import FOOT_JOINTS, POINTED_DEG, InAir, OnPointe, Standing
+from enpointe.models.leg_target import (
+    FOOT_JOINTS,
+    POINTED_DEG,
+    OnPointe,
+    Passing,
+    Standing,
+)
 from enpointe.models.rules.balance import centroid
 from enpointe.models.rules.base import Kind, Rule, SidedRule, Symbols
 from enpointe.models.target import PoseTarget
@@ -25,6 +31,8 @@ __all__ = [
     "FootOnItsWayToPoint",
     "FootRaised",
     "FootTurnout",
+    "FootYields",
+    "HeelAboveTheFloor",
     "OnTheTip",
     "PointedFoot",
     "ToesFlat",
@@ -97,6 +105,15 @@ class FootRaised(_FootRule):
         leg = target.legs[Side(self.side)]
         assert isinstance(leg, Standing)
         return {f"{self.side}_rise": np.array(leg.rise)}
+
+
+class FootYields(FootRaised):
+    """The heel of a foot that weight is coming to or leaving rises as the weight needs it."""
+
+    name: ClassVar[str] = "heel that yields"
+    bound: ClassVar[float] = 60.0
+    kind: ClassVar[Kind] = Kind.PREFER
+    weight: ClassVar[float] = 5.0
 
 
 class FootTurnout(_FootRule):
@@ -176,8 +193,8 @@ class PointedFoot(SidedRule):
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
         leg = target.legs[Side(self.side)]
-        passing = leg.foot if isinstance(leg, InAir) else None
-        return {f"{self.side}_foot_angles": np.radians(POINTED_DEG) if passing is None else passing}
+        angles = leg.angles[4:] if isinstance(leg, Passing) else np.radians(POINTED_DEG)
+        return {f"{self.side}_foot_angles": angles}
 
 
 class FootOnItsWayToPoint(PointedFoot):
@@ -200,13 +217,22 @@ class FootAboveTheFloor(SidedRule):
     bound: ClassVar[float] = 0.0
     kind: ClassVar[Kind] = Kind.AT_LEAST
     source: ClassVar[str] = "Neagle 2005 §4.5.3 e (toes below the floor)"
+    parts: ClassVar[tuple[str, ...]] = ("heel", "ball", "tip")
 
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
-        spheres = product(("heel", "ball", "tip"), ("inner", "outer"))
+        spheres = product(self.parts, ("inner", "outer"))
         return ca.vertcat(*(body.lowest(f"{self.side}_{p}_{edge}") for p, edge in spheres))
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
         return {}
+
+
+class HeelAboveTheFloor(FootAboveTheFloor):
+    """The heel of a foot whose ball stays on its mark does not go through the floor."""
+
+    name: ClassVar[str] = "heel above the floor"
+    bound: ClassVar[float] = -0.5
+    parts: ClassVar[tuple[str, ...]] = ("heel",)
 
 
 class TurnoutAtTheHip(SidedRule):

@@ -10,7 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from enpointe.models.kinematics import SymbolicBody
-from enpointe.models.leg_target import InAir, OnPointe, Standing, ToeOnFloor, ToeOnLeg
+from enpointe.models.leg_target import (
+    FOOT_JOINTS,
+    LEG_JOINTS,
+    InAir,
+    OnPointe,
+    Passing,
+    Standing,
+    ToeOnFloor,
+    ToeOnLeg,
+)
 from enpointe.models.rules.base import Kind, SidedRule, Symbols
 from enpointe.models.rules.hip import thigh_twist
 from enpointe.models.target import PoseTarget
@@ -18,10 +27,11 @@ from enpointe.notation import Side
 
 __all__ = [
     "FootOnItsSign",
-    "FootOnItsWay",
     "KneeBend",
     "KneeOnItsSign",
     "KneeOverToe",
+    "KneeYields",
+    "LegOnItsWay",
     "LegTurnedOut",
     "StretchedKnee",
     "ToeAtTheLeg",
@@ -46,6 +56,15 @@ class KneeBend(SidedRule):
         leg = target.legs[Side(self.side)]
         assert isinstance(leg, Standing | OnPointe)
         return {f"{self.side}_knee_bend": np.array(leg.knee_bend)}
+
+
+class KneeYields(KneeBend):
+    """The knee of a leg that weight is coming to or leaving gives as the weight needs it."""
+
+    name: ClassVar[str] = "knee that yields"
+    bound: ClassVar[float] = 60.0
+    kind: ClassVar[Kind] = Kind.PREFER
+    weight: ClassVar[float] = 10.0
 
 
 class KneeOverToe(SidedRule):
@@ -108,14 +127,25 @@ class FootOnItsSign(SidedRule):
         return {f"{self.side}_ankle": leg.ankle - hip, "girdle": target.upright.ravel(order="F")}
 
 
-class FootOnItsWay(FootOnItsSign):
-    """The ankle of a passing leg keeps to its way, as well as the floor lets it."""
+class LegOnItsWay(SidedRule):
+    """Hip and knee of a passing leg keep to their way, as well as floor and other leg let them."""
 
-    name: ClassVar[str] = "foot on its way"
-    bound: ClassVar[float] = 60.0
+    name: ClassVar[str] = "leg on its way"
+    unit: ClassVar[str] = "deg"
+    bound: ClassVar[float] = 20.0
     kind: ClassVar[Kind] = Kind.PREFER
-    weight: ClassVar[float] = 300.0
+    weight: ClassVar[float] = 30.0
     source: ClassVar[str] = "Neagle 2005 §5.2.1 (shortest path)"
+
+    def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
+        joints = LEG_JOINTS[: -len(FOOT_JOINTS)]
+        angles = ca.vertcat(*(body.joint(f"{self.side}_{joint}") for joint in joints))
+        return angles - symbols(f"{self.side}_leg_angles", len(joints))
+
+    def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
+        leg = target.legs[Side(self.side)]
+        assert isinstance(leg, Passing)
+        return {f"{self.side}_leg_angles": leg.angles[: -len(FOOT_JOINTS)]}
 
 
 class KneeOnItsSign(SidedRule):

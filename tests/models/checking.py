@@ -15,6 +15,7 @@ from enpointe.models.leg_target import (
     InAir,
     LegTarget,
     OnPointe,
+    Passing,
     Standing,
     ToeOnFloor,
     ToeOnLeg,
@@ -75,7 +76,7 @@ def _check_leg(model: mujoco.MjModel, data: mujoco.MjData, found: KeyPose, side:
         else:
             check_pointe(data, leg, found.target.figure, side)
         return
-    if isinstance(leg, InAir) and leg.passing:
+    if isinstance(leg, Passing):
         return
     for joint, angle in zip(FOOT_JOINTS, POINTED_DEG, strict=True):
         assert hinge(model, found.qpos, f"{side}_{joint}") == pytest.approx(angle, abs=3)

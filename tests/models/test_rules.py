@@ -11,7 +11,7 @@ import pytest
 
 from enpointe.models import Figure, PoseTarget, Style, dancer_model, pose_target
 from enpointe.models.kinematics import SymbolicBody, qpos_from_tangent
-from enpointe.models.leg_target import InAir
+from enpointe.models.leg_target import InAir, Passing, Standing
 from enpointe.models.rules import (
     Rule,
     Symbols,
@@ -60,15 +60,19 @@ OTHERS = ("head: turn left 20, tilt right 10", "body: bend back 10", "pelvis: tu
 
 
 def on_its_way(target: PoseTarget) -> PoseTarget:
-    """The same pose with its legs in the air passing, the foot between flat and pointed."""
-    foot = np.radians([40.0, 5.0, -3.0, 2.0])
+    """The same pose with its legs in the air passing, and those on the floor yielding."""
+    angles = np.radians([30.0, -5.0, 40.0, 20.0, 40.0, 5.0, -3.0, 2.0])
     legs = {
-        side: replace(leg, foot=foot, knee=0.5 * (target.figure.hips[side] + leg.ankle))
+        side: Passing(angles)
         if isinstance(leg, InAir)
+        else replace(leg, yields=True, rise=0.3)
+        if isinstance(leg, Standing)
         else leg
         for side, leg in target.legs.items()
     }
-    return replace(target, legs=legs)
+    standing = any(isinstance(leg, Standing) for leg in legs.values())
+    com = np.array([0.1, 0.05, 0.9]) if standing else target.com
+    return replace(target, legs=legs, com=com)
 
 
 def targets(figure: Figure) -> dict[str, PoseTarget]:

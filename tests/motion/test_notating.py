@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -13,7 +14,7 @@ from hypothesis import strategies as st
 from enpointe.errors import MotionError
 from enpointe.models import dancer_model, pose_target
 from enpointe.models.recognition import recogniser_of
-from enpointe.motion import Motion
+from enpointe.motion import PRESETS, Interpolation, Motion, interpolate
 from enpointe.motion.beats import find_pulse, on_the_beat
 from enpointe.motion.notating import notate, read_motion
 from enpointe.notation import (
@@ -27,6 +28,7 @@ from enpointe.notation import (
     parse_score,
     score_from_json,
     score_to_json,
+    shipped_scores,
 )
 
 from .captured import captured
@@ -34,6 +36,21 @@ from .dancing import choreography, motion, solved, solver, written_score
 
 PORTS_DE_BRAS = ("first-port-de-bras", "third-port-de-bras", "fourth-port-de-bras")
 WITHOUT_JUMPS = ("adage-developpe", "temps-lie-grand-battement", "evaluation-poses")
+
+
+WITH_JUMPS = {
+    "glissade-jete-assemble": {
+        "11/4": "in the air of the temps levé the free foot leaves the ankle",
+        "27/4": "the same to the other side",
+        "7/2": "the toe of the dégagé is at the floor as she takes off, as that of a tendu",
+        "15/2": "the same to the other side",
+    },
+    "grand-jete-en-tournant": {
+        "15/4": "the legs pass each other under a turning body, and neither is pointed down",
+        "31/4": "the same once more",
+    },
+}
+"""What is not read back by its name, and why."""
 
 
 def leg_class(position: LegPosition | None) -> object:
@@ -80,6 +97,52 @@ def test_an_exercise_on_the_floor_is_read_back(name: str) -> None:
     for frame in wanted:
         assert names_of(found[frame.beat]) == names_of(frame), f"beat {frame.beat}"
     assert len(found) - len(wanted) <= len(wanted) // 4
+
+
+def test_every_shipped_score_is_read_back() -> None:
+    assert {*PORTS_DE_BRAS, *WITHOUT_JUMPS, *WITH_JUMPS} == set(shipped_scores())
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", WITH_JUMPS)
+def test_an_allegro_is_read_back(name: str) -> None:
+    """All jumps at their counts; all names but those of `WITH_JUMPS`, heights within 5 degrees."""
+    danced = interpolate(solved(name), PRESETS["natural"].effort, Interpolation("expressive"))
+    without_events = Motion.from_qpos(danced.model, danced.time, danced.qpos)
+    written = load_score(name).performed()
+    score = notate(without_events, written.tempo)
+    found = {frame.beat: frame for frame in score.resolved()}
+    unread = set()
+    before = None
+    for frame in written.resolved():
+        same = before is not None and names_of(frame) == names_of(before)
+        there = frame.beat in found
+        if not (alike(found[frame.beat], frame) if there else same):
+            unread.add(str(frame.beat))
+        before = frame
+    assert unread <= set(WITH_JUMPS[name])
+    beats = {frame.beat for frame in written.frames}
+    assert len([beat for beat in found if beat not in beats]) <= len(beats) // 4
+    landings = [frame.jump.on for frame in score.frames if frame.jump is not None]
+    assert landings == [frame.jump.on for frame in written.frames if frame.jump is not None]
+
+
+def alike(found: ResolvedFrame, wanted: ResolvedFrame) -> bool:
+    """The same names, heights of a leg that is on its way within 5 degrees."""
+    for side in Side:
+        read, written = found.legs[side].named, wanted.legs[side].named
+        if (read is None) != (written is None):
+            return False
+        if read is not None and written is not None:
+            if leg_class(replace(read, degrees=None)) != leg_class(replace(written, degrees=None)):
+                return False
+            if abs((read.degrees or 0.0) - (written.degrees or 0.0)) > 5.0:
+                return False
+        if found.legs[side].support != wanted.legs[side].support:
+            return False
+        if found.legs[side].position != wanted.legs[side].position:
+            return False
+    return all(found.arms[side].named == wanted.arms[side].named for side in Side)
 
 
 @pytest.mark.parametrize("name", PORTS_DE_BRAS)
@@ -159,7 +222,9 @@ def test_a_tempo_that_cannot_be_danced_is_refused(tempo: float) -> None:
 @given(
     st.floats(50.0, 90.0),
     st.floats(0.0, 2.0),
-    st.lists(st.sampled_from([1, 1, 1, 2]), min_size=4, max_size=12),
+    st.lists(st.sampled_from([1, 1, 1, 2]), min_size=4, max_size=12).filter(
+        lambda steps: steps.count(1) >= steps.count(2)
+    ),
     st.integers(0, 2**32 - 1),
 )
 def test_a_steady_pulse_is_found(tempo: float, start: float, steps: list[int], seed: int) -> None:
@@ -206,7 +271,7 @@ def test_a_captured_pointe_tendue_is_found(cmu: Path) -> None:
 
 
 def test_a_captured_arabesque_is_found(cmu: Path) -> None:
-    """05_14: the left leg goes up behind her, highest at 4.4 s, its knee bent by a third."""
+    """05_14: the left leg goes up behind her, highest at 4.4 s; nothing of the kind elsewhere."""
     recogniser = recogniser_of(dancer_model(flesh=False))
     take = captured(cmu, "05_14", recogniser.figure.straight_leg)
     nearest = {}
@@ -215,7 +280,7 @@ def test_a_captured_arabesque_is_found(cmu: Path) -> None:
         if match is not None and match.name.split()[0] in ("arabesque", "attitude"):
             position = match.position
             assert isinstance(position, LegPosition)
-            if match.distance < 40.0 and (position.degrees or 0.0) >= 75.0:
+            if match.named:
                 nearest[time] = position.direction
     assert {round(time, 1) for time in nearest} >= {4.2, 4.3, 4.4, 4.5}
     assert set(nearest.values()) == {"derrière"}
