@@ -11,7 +11,8 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from PIL import Image, ImageDraw
+import matplotlib
+from PIL import Image, ImageDraw, ImageFont
 
 from enpointe.models import KeyPoseSolver, Style, dancer_model, pose_target
 from enpointe.notation import names
@@ -20,9 +21,11 @@ from enpointe.sim.camera import View
 from enpointe.sim.render import open_painter
 
 FOLDER = Path(__file__).parent / "images"
-WIDTH, HEIGHT, LABEL = 150, 210, 16
+FONT = Path(matplotlib.get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf"
+"""Pillow's own font has no accents."""
+WIDTH, HEIGHT, LABEL = 140, 180, 18
 COLUMNS = 6
-VIEWS = (View(distance=5.0), View(azimuth=90.0, distance=5.0))
+VIEWS = (View(distance=4.6), View(azimuth=90.0, distance=4.6))
 SHEETS = {
     "feet": ("feet ", False),
     "arms": ("arms ", False),
@@ -38,7 +41,7 @@ def sheet(solver: KeyPoseSolver, part: str, *, real: bool) -> Image.Image:
     rows = -(-len(chosen) // COLUMNS)
     cell = (2 * WIDTH, HEIGHT + LABEL)
     page = Image.new("RGB", (COLUMNS * cell[0], rows * cell[1]), "white")
-    ink = ImageDraw.Draw(page)
+    ink, font = ImageDraw.Draw(page), ImageFont.truetype(str(FONT), 12)
     with open_painter(solver.model, WIDTH, HEIGHT, quality="fine")[0] as painter:
         for i, name in enumerate(chosen):
             score = vocabulary_score(name)
@@ -48,7 +51,7 @@ def sheet(solver: KeyPoseSolver, part: str, *, real: bool) -> Image.Image:
             x, y = i % COLUMNS * cell[0], i // COLUMNS * cell[1]
             for j, view in enumerate(VIEWS):
                 page.paste(painter.paint(qpos, camera=view.following()), (x + j * WIDTH, y))
-            ink.text((x + 4, y + HEIGHT + 2), name.removeprefix(part), fill="black")
+            ink.text((x + 4, y + HEIGHT + 2), name.removeprefix(part), fill="black", font=font)
     return page
 
 

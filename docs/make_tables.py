@@ -9,6 +9,7 @@ tests/docs fails where a page and the code differ.
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Callable, Iterable
 from importlib.resources import files
 from inspect import isabstract
@@ -26,6 +27,9 @@ from enpointe.notation.tempo import TEMPO_WORDS
 from enpointe.notation.vocabulary import ARM_PLACES, ARMS, FEET, LEGS, POSES
 from enpointe.notation.vocabulary_arms import BODY_PLACES, CONTACT_PLACES
 from enpointe.notation.vocabulary_feet import BENDS, FLOOR
+
+sys.path.insert(0, str(Path(__file__).parent))
+from prepose import CLAIMS, measured
 
 DOCS = Path(__file__).parent
 MARKED = re.compile(
@@ -255,6 +259,7 @@ def ballet() -> str:
         Kind.AT_LEAST: "inequality",
         Kind.PREFER: "cost",
         Kind.CHECK: "checked only",
+        Kind.CHECK_AT_LEAST: "checked only",
     }
     return table(
         ("rule", "the solver sees", "holds within", "weight", "source"),
@@ -262,12 +267,30 @@ def ballet() -> str:
             (
                 r.name,
                 words[r.kind],
-                f"{'at least ' if r.kind is Kind.AT_LEAST else ''}{r.bound:g} "
+                f"{'at least ' if r.kind.is_margin else ''}{r.bound:g} "
                 f"{'°' if r.unit == 'deg' else r.unit}".replace(" °", "°"),
                 f"{r.weight:g}" if r.kind is Kind.PREFER else "",
                 r.source,
             )
             for r in sorted(found, key=lambda r: (r.__module__, r.name))
+        ),
+    )
+
+
+def prepose() -> str:
+    rows = zip(CLAIMS, measured(), strict=True)
+    return table(
+        ("position", "limb", "from", "Prepose", "ours", "difference"),
+        (
+            (
+                c.position,
+                f"{c.side} {c.bone}",
+                "up" if c.up else "down",
+                f"{c.degrees:+g}°",
+                f"{ours:+.0f}°",
+                f"{ours - c.degrees:+.0f}°",
+            )
+            for c, ours in rows
         ),
     )
 
@@ -295,6 +318,7 @@ TABLES: dict[str, Callable[[], str]] = {
         segments,
         joints,
         ballet,
+        prepose,
     )
 }
 

@@ -127,7 +127,7 @@ class RuleFigures(TypedDict):
 
 
 class CheatFigures(TypedDict):
-    """What a real dancer lent to one key pose."""
+    """What a real dancer lends to a position, by name."""
 
     name: str
     value: float

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
 import sys
@@ -122,8 +123,8 @@ def test_a_broken_rule_is_printed_with_how_much(
     score.write_text(header + "beat 0:\n  feet: second, grand plié\n  arms: first\n", "utf-8")
     assert _run(["pose", str(score)]) == 1
     text = " ".join(capfd.readouterr().out.split())
-    assert "weight in the middle: broken, 4" in text
-    assert "mm (at most 20)" in text
+    assert re.search(r"weight in the middle: broken, [45]\d\.\d mm \(at most 20\)", text)
+    assert re.search(r"3\d of 37 rules held", text)
 
 
 def test_a_pose_in_the_air_is_a_pose(
