@@ -13,7 +13,7 @@ import pytest
 from enpointe.errors import ModelError
 from enpointe.models import KeyPoseSolver, PoseTarget, dancer_model
 from enpointe.models.kinematics import Capsule, SymbolicBody
-from enpointe.models.leg_target import InAir
+from enpointe.models.leg_target import LEG_JOINTS, Passing
 from enpointe.models.rules.clearance import ArmsClearOfLegs, ArmsClearOfTheBody, LegsApart, gap
 from enpointe.notation import Side
 
@@ -100,22 +100,21 @@ def test_only_capsules_have_a_gap() -> None:
         body.lowest("left_foot_limb")
 
 
-def crossed_in_passing(offset: float) -> PoseTarget:
-    """A straight leg on its way beside the other, its ankle `offset` m in from its own hip."""
+def crossed_in_passing(cross: float) -> PoseTarget:
+    """A bent leg on its way through the thigh of the standing one, its hip crossed by `cross`."""
     target = solved("leg raised seconde 45").target
-    hip = target.figure.hips[Side.RIGHT]
-    length = np.linalg.norm(target.figure.hips[Side.RIGHT] - target.legs[Side.RIGHT].ankle)
-    down = np.sqrt(length**2 - offset**2 - 0.1**2)
-    ankle = hip + np.array([0.1, offset, -down])
-    knee = hip + 0.5 * (ankle - hip)
-    passing = InAir(ankle, knee, np.radians(50), np.radians([40.0, 0.0, 0.0, 0.0]))
+    passing = Passing(np.array([0.0, cross, 0.87, 0.6, 0.7, 0.0, 0.0, 0.0]))
     return replace(target, legs={**target.legs, Side.RIGHT: passing}, name="crossing")
 
 
-@pytest.mark.parametrize("offset", [0.08, 0.12, 0.16])
-def test_a_passing_leg_goes_round_the_other(offset: float, solver: KeyPoseSolver) -> None:
+@pytest.mark.parametrize("cross", [0.15, 0.2, 0.25])
+def test_a_passing_leg_goes_round_the_other(cross: float, solver: KeyPoseSolver) -> None:
     """Its way leads through the standing leg; the pose stops at the skin, from either guess."""
-    target = crossed_in_passing(offset)
+    target = crossed_in_passing(cross)
+    straight_through = solved("leg raised seconde 45").qpos.copy()
+    for name, angle in zip(LEG_JOINTS, target.legs[Side.RIGHT].angles, strict=True):
+        straight_through[solver.model.joint(f"right_{name}").qposadr[0]] = angle
+    assert frozenset({"left_thigh", "right_thigh"}) in overlaps(solver.model, straight_through)
     for guess in (None, solved("leg raised seconde 45").qpos):
         found = solver.solve(target, guess)
         assert found.certificate.legal, str(found.certificate)
