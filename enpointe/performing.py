@@ -94,7 +94,11 @@ class Performance:
         return fit_logistic(wrist_profiles(self.danced))
 
     def save(self, folder: Path) -> dict[str, Path]:
-        """Write `motion.npz` and, of a physical performance, `recording.npz`; returns paths."""
+        """Write `motion.npz` and, of a physical performance, `recording.npz` and `balance.csv`.
+
+        Returns:
+            The paths by name.
+        """
         from enpointe.motion.npz import save_motion
 
         files = {"motion": folder / "motion.npz"}
@@ -102,6 +106,10 @@ class Performance:
         if self.recording is not None:
             files["recording"] = folder / "recording.npz"
             self.recording.save(files["recording"])
+            from enpointe.sim.balance_table import balance_table
+
+            files["balance"] = folder / "balance.csv"
+            balance_table(self.recording).save(files["balance"])
         return files
 
     def summary(self) -> dict[str, object]:
