@@ -322,6 +322,11 @@ def dance(
     from enpointe.sim.body import SimulatedBody
     from enpointe.sim.measures import measure
 
+    if controller == "wholebody":
+        from enpointe.motion.contact_plan import steps
+        from enpointe.motion.danceable import danceable
+
+        motion = danceable(motion).motion if steps(motion) else motion
     planned = FeedForward.along(motion)
     driver = WholeBody(motion) if controller == "wholebody" else PD(motion, feedforward=planned)
     recording = run(

@@ -109,6 +109,7 @@ def test_a_dance_can_be_saved_and_read_again(tmp_path: Path) -> None:
     files = dance().save(tmp_path / "new folder")
     model = dance().motion.model
     assert sorted(p.name for p in (tmp_path / "new folder").iterdir()) == [
+        "balance.csv",
         "motion.npz",
         "recording.npz",
     ]
