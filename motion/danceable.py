@@ -165,7 +165,7 @@ class _Body:
         return qpos
 
     def _points(self) -> Array:
-        points = self.data.geom_xpos[self._soles].copy()
+        points = np.array(self.data.geom_xpos[self._soles])
         points[:, 2] -= self._radius
         return points
 
