@@ -43,6 +43,7 @@ app = typer.Typer(
 class ControllerName(StrEnum):
     KINEMATIC = "kinematic"
     PD = "pd"
+    WHOLEBODY = "wholebody"
 
 
 class BodyName(StrEnum):
@@ -57,22 +58,36 @@ def perform(
     effort: Effort = None,
     tempo: Tempo = None,
     controller: Annotated[
-        ControllerName, typer.Option(help="pd dances under gravity; kinematic only moves.")
+        ControllerName,
+        typer.Option(
+            help="pd dances under gravity on two feet; wholebody balances on one as well; kinematic"
+            " only moves."
+        ),
     ] = ControllerName.PD,
+    hold: Annotated[
+        float | None,
+        typer.Option(
+            help="Hold the last pose for so many seconds; INPUT may then be a single pose, named as"
+            " for `enpointe pose`."
+        ),
+    ] = None,
     body: Annotated[BodyName, typer.Option(help="Who dances.")] = BodyName.DANCER,
     dancer: StyledDancerOptions,
     video: Video = True,
     output: OutputOptions,
 ) -> int:
     """Dance a score under gravity, and write a report of it."""
+    from enpointe.posing import find_score
+
     console = output.console()
     with console.progress() as progress:
-        score = enpointe.load_score(source)
+        score = enpointe.load_score(source) if hold is None else find_score(source)
         dance = enpointe.perform(
             score,
             effort=effort,
             tempo=tempo,
             controller=controller.value,
+            hold=hold,
             style=dancer.style(),
             dancer=dancer.anthropometry(),
             progress=progress,

@@ -94,6 +94,7 @@ class PhysicalFigures(TypedDict, total=False):
     flights: list[FlightFigures]
     torque_limit_fraction_max: float
     realtime_factor: float
+    qp_failures: int
 
 
 class PerformanceFigures(KinematicFigures, PhysicalFigures):

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from enpointe.errors import EnpointeError
 from enpointe.figures import PerformanceFigures, PhysicalFigures, RuleKeptFigures
-from enpointe.notation import Score, load_score
+from enpointe.notation import FloorContact, Score, load_score
 
 if TYPE_CHECKING:
     from enpointe.controllers import Recording
@@ -25,7 +25,7 @@ Progress = Callable[[str, float, float], None]
 """Called with what is being done, how much of it is done, and how much there is."""
 PHRASED = "as its phrases are marked"
 """The name of the effort of a dance whose phrases have qualities of their own."""
-CONTROLLERS = ("kinematic", "pd")
+CONTROLLERS = ("kinematic", "pd", "wholebody")
 
 
 def silent(task: str, done: float, total: float) -> None:
@@ -41,7 +41,7 @@ class Performance:
         effort: Quality that was asked.
         effort_name: Preset or numbers, or `PHRASED` where each phrase has its own.
         interpolation: How the key poses were joined.
-        controller: "kinematic" or "pd".
+        controller: One of `CONTROLLERS`.
         motion: The reference: what was to be danced.
         recording: What happened; None for a kinematic performance.
         measures: Figures of the recording; None for a kinematic performance.
@@ -49,6 +49,8 @@ class Performance:
             asks nothing there.
         shortfall: Most that the floor could not give of the force and moment that the movement
             asks of it, N (moments over 1 m); None for a kinematic performance.
+        qp_failures: Periods for which the whole-body controller found no solution and fell back;
+            None for other controllers.
     """
 
     choreography: Choreography
@@ -61,6 +63,7 @@ class Performance:
     measures: Measures | None
     shortfall: float | None = None
     rules: tuple[RuleKept, ...] = ()
+    qp_failures: int | None = None
 
     @property
     def score(self) -> Score:
@@ -97,7 +100,11 @@ class Performance:
         return fit_logistic(wrist_profiles(self.danced))
 
     def save(self, folder: Path) -> dict[str, Path]:
-        """Write `motion.npz` and, of a physical performance, `recording.npz`; returns paths."""
+        """Write `motion.npz` and, of a physical performance, `recording.npz` and `balance.csv`.
+
+        Returns:
+            The paths by name.
+        """
         from enpointe.motion.npz import save_motion
 
         files = {"motion": folder / "motion.npz"}
@@ -105,6 +112,10 @@ class Performance:
         if self.recording is not None:
             files["recording"] = folder / "recording.npz"
             self.recording.save(files["recording"])
+            from enpointe.sim.balance_table import balance_table
+
+            files["balance"] = folder / "balance.csv"
+            balance_table(self.recording).save(files["balance"])
         return files
 
     def summary(self) -> PerformanceFigures:
@@ -129,6 +140,8 @@ class Performance:
         if self.recording is not None and self.measures is not None:
             physical = _physical_figures(self.recording, self.measures, self.shortfall)
             figures = {**figures, **physical}
+        if self.qp_failures is not None:
+            figures["qp_failures"] = self.qp_failures
         return figures
 
 
@@ -172,6 +185,15 @@ def _physical_figures(
     }
 
 
+def _on_pointe(score: Score) -> bool:
+    """Whether the score stands on pointe anywhere, for which the dancer puts on the shoes."""
+    return any(
+        leg.support is not None and leg.support.floor is FloorContact.POINTE
+        for frame in score.resolved()
+        for leg in frame.legs.values()
+    )
+
+
 def check_reach(score: Score, dancer: Anthropometry | None, style: Style | None) -> None:
     """Refuse signs that this dancer's limbs do not reach, before the solver is loaded.
 
@@ -193,6 +215,7 @@ def prepare(
     tempo: float | None = None,
     style: Style | None = None,
     dancer: Anthropometry | None = None,
+    still: bool = False,
     progress: Progress = silent,
 ) -> Choreography:
     """Read a score and solve its key poses.
@@ -202,6 +225,7 @@ def prepare(
         tempo: Pulses a minute; the score's own if None.
         style: The method's amounts.
         dancer: Height, mass and sex; a dancer of 1.68 m and 54 kg if None.
+        still: Take a score of one frame, which is a pose to hold.
         progress: Told how far it is.
 
     Raises:
@@ -216,9 +240,10 @@ def prepare(
 
     return solve_key_poses(
         score,
-        KeyPoseSolver(dancer_model(dancer)),
+        KeyPoseSolver(dancer_model(dancer, pointe_shoes=_on_pointe(score))),
         style=style,
         tempo=tempo,
+        still=still,
         progress=lambda done, total: progress("key poses", done, total),
     )
 
@@ -230,6 +255,7 @@ def perform(
     tempo: float | None = None,
     controller: str = "pd",
     interpolation: str = "expressive",
+    hold: float | None = None,
     style: Style | None = None,
     dancer: Anthropometry | None = None,
     progress: Progress = silent,
@@ -242,8 +268,10 @@ def perform(
             None, each phrase's own where the score marks one, and else natural, at the score's own
             tempo.
         tempo: Pulses a minute; the preset's or the score's if None.
-        controller: "pd", or "kinematic" for the movement without physics.
+        controller: "pd", which stands on two feet; "wholebody", which balances on one as well; or
+            "kinematic" for the movement without physics.
         interpolation: "expressive", "logistic" or "slerp".
+        hold: Seconds that the last pose is held; with it a score of one frame is a pose to hold.
         style: The method's amounts.
         dancer: Height, mass and sex; a dancer of 1.68 m and 54 kg if None.
         progress: Told how far it is.
@@ -266,6 +294,8 @@ def perform(
 
     if controller not in CONTROLLERS:
         raise EnpointeError(f"no controller {controller!r}; use {' or '.join(CONTROLLERS)}")
+    if hold is not None and not (isfinite(hold) and 0.0 < hold <= LONGEST_HOLD):
+        raise EnpointeError(f"a pose is held for up to {LONGEST_HOLD:g} s, not for {hold:g}")
     quality, preset_tempo, effort_name = find_effort(effort)
     kind = Interpolation.named(interpolation)
     choreography = prepare(
@@ -273,6 +303,7 @@ def perform(
         tempo=tempo if tempo is not None else preset_tempo,
         style=style,
         dancer=dancer,
+        still=hold is not None,
         progress=progress,
     )
     phrased = effort is None and has_qualities(score)
@@ -283,6 +314,7 @@ def perform(
         kind,
         controller,
         phrased=phrased,
+        hold=hold,
         progress=progress,
     )
 
@@ -290,6 +322,9 @@ def perform(
 def has_qualities(score: Score) -> bool:
     """Whether a phrase of a score is marked with a quality of its own."""
     return any(phrase.effort is not None for phrase in score.phrases)
+
+
+LONGEST_HOLD = 600.0
 
 
 def dance(
@@ -300,6 +335,7 @@ def dance(
     controller: str,
     *,
     phrased: bool = False,
+    hold: float | None = None,
     progress: Progress = silent,
 ) -> Performance:
     """Move and, unless kinematic, physically perform a solved score; see `perform`.
@@ -314,24 +350,40 @@ def dance(
         effort,
         interpolation,
         ways=ways,
+        hold=hold,
         progress=lambda done, total: progress("movement", done, total),
     )
-    recording = measures = shortfall = None
-    if controller == "pd":
-        from enpointe.controllers import PD
-        from enpointe.controllers import perform as run
-        from enpointe.sim.body import SimulatedBody
-        from enpointe.sim.measures import measure
-
-        pd = PD(motion)
-        shortfall = float(pd.feedforward.shortfall.max())
-        recording = run(
+    rules = rules_kept(motion, ways)
+    if controller == "kinematic":
+        return Performance(
+            choreography,
+            effort,
+            effort_name,
+            interpolation,
+            controller,
             motion,
-            pd,
-            SimulatedBody.at_start_of(motion),
-            progress=lambda done, total: progress("dance", done, total),
+            None,
+            None,
+            rules=rules,
         )
-        measures = measure(recording)
+    from enpointe.controllers import PD, FeedForward, WholeBody
+    from enpointe.controllers import perform as run
+    from enpointe.sim.body import SimulatedBody
+    from enpointe.sim.measures import measure
+
+    if controller == "wholebody":
+        from enpointe.motion.contact_plan import steps
+        from enpointe.motion.danceable import danceable
+
+        motion = danceable(motion).motion if steps(motion) else motion
+    planned = FeedForward.along(motion)
+    driver = WholeBody(motion) if controller == "wholebody" else PD(motion, feedforward=planned)
+    recording = run(
+        motion,
+        driver,
+        SimulatedBody.at_start_of(motion),
+        progress=lambda done, total: progress("dance", done, total),
+    )
     return Performance(
         choreography,
         effort,
@@ -340,7 +392,8 @@ def dance(
         controller,
         motion,
         recording,
-        measures,
-        shortfall,
-        rules_kept(motion, ways),
+        measure(recording),
+        float(planned.shortfall.max()),
+        rules,
+        driver.workload.failures if isinstance(driver, WholeBody) else None,
     )

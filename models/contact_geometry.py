@@ -11,7 +11,16 @@ import mujoco
 
 from enpointe.models.anatomy import NECK_RISE, SIDES, Skeleton, side_sign
 
-__all__ = ["FLOOR", "SOLE_CLASS", "add_floor", "add_limb_contacts", "add_soles"]
+__all__ = [
+    "FLOOR",
+    "PLATFORM",
+    "PLATFORM_RISE",
+    "SOLE_CLASS",
+    "add_floor",
+    "add_limb_contacts",
+    "add_pointe_shoes",
+    "add_soles",
+]
 
 FLOOR = "floor"
 SOLE_CLASS = 2
@@ -81,7 +90,7 @@ def add_soles(spec: mujoco.MjSpec, skeleton: Skeleton) -> None:
     """Six spheres a foot: heel, ball and tip of the toes, an inner and an outer one of each.
 
     The ball's lie on the axis of the toe joint, so that one set serves the flat foot and
-    demi-pointe.
+    demi-pointe, and belong to the toes, which stay where they are while the foot rises over them.
     """
     half = skeleton.ball_half_breadth - _SOLE_RADIUS
     lift = _SOLE_RADIUS - skeleton.ankle_height
@@ -90,16 +99,42 @@ def add_soles(spec: mujoco.MjSpec, skeleton: Skeleton) -> None:
         for edge, s in (("inner", -side_sign(side)), ("outer", side_sign(side))):
             heel = [-skeleton.heel_back + _SOLE_RADIUS, s * 0.55 * half, lift]
             _add_sole(foot, f"{side}_heel_{edge}", heel)
-            _add_sole(foot, f"{side}_ball_{edge}", [skeleton.ball_forward, s * half, lift])
+            _add_sole(toe, f"{side}_ball_{edge}", [0, s * half, 0])
             tip = [skeleton.toe_length - _SOLE_RADIUS, s * 0.5 * half, 0]
             _add_sole(toe, f"{side}_tip_{edge}", tip)
 
 
-def _add_sole(body: mujoco.MjsBody, name: str, pos: list[float]) -> None:
+def add_pointe_shoes(spec: mujoco.MjSpec, skeleton: Skeleton) -> None:
+    """The corners of the platform at the toes' end, four small spheres a foot.
+
+    In soft shoes the tip is a line of two spheres, on which nobody stands.
+    """
+    long, broad = PLATFORM
+    end = skeleton.toe_length - _PLATFORM_RADIUS
+    middle = PLATFORM_RISE - _SOLE_RADIUS
+    for side in SIDES:
+        for edge, s in (("inner", -side_sign(side)), ("outer", side_sign(side))):
+            for part, rise in (("under", -0.5 * long), ("upper", 0.5 * long)):
+                corner = [end, s * 0.5 * broad, middle + rise]
+                name = f"{side}_platform_{part}_{edge}"
+                _add_sole(spec.body(f"{side}_toe"), name, corner, _PLATFORM_RADIUS)
+
+
+PLATFORM = (0.03, 0.04)
+"""Length and breadth of a pointe shoe's platform, m: 12 cm^2, ours, of a square box. Makers sell
+narrow and broad ones; no measured area was found."""
+PLATFORM_RISE = 0.025
+"""Its middle above the sole, m: its lower edge is 7 mm off the floor when the foot is flat."""
+_PLATFORM_RADIUS = 0.003
+
+
+def _add_sole(
+    body: mujoco.MjsBody, name: str, pos: list[float], radius: float = _SOLE_RADIUS
+) -> None:
     body.add_geom(
         name=name,
         type=mujoco.mjtGeom.mjGEOM_SPHERE,
-        size=[_SOLE_RADIUS, 0, 0],
+        size=[radius, 0, 0],
         pos=pos,
         contype=SOLE_CLASS,
         conaffinity=_FLOOR_CLASS,

@@ -18,6 +18,7 @@ from enpointe.models.leg_target import OnPointe, Standing
 from enpointe.models.stances import StanceTracker
 from enpointe.models.style import Style
 from enpointe.models.target import pose_target
+from enpointe.motion.bearing import bearing_columns
 from enpointe.motion.effort import Effort, find_effort
 from enpointe.motion.grounding import Contact, ground
 from enpointe.motion.kind import Interpolation
@@ -88,6 +89,7 @@ def solve_key_poses(
     *,
     style: Style | None = None,
     tempo: float | None = None,
+    still: bool = False,
     progress: Progress | None = None,
 ) -> Choreography:
     """Solve every frame of a score.
@@ -97,6 +99,7 @@ def solve_key_poses(
         solver: Of the dancer.
         style: The method's amounts.
         tempo: Pulses a minute; the score's own if None.
+        still: Take a score of one frame, which is a pose to hold.
         progress: Called with (done, all).
 
     Raises:
@@ -107,7 +110,7 @@ def solve_key_poses(
     danced = score.performed()
     danced.duration(tempo)
     frames = danced.resolved()
-    if len(frames) < 2:
+    if len(frames) < 2 and not still:
         raise MotionError(f"{score.title!r} has one frame; a motion needs two at least")
     tracker = StanceTracker(solver.figure, (style or Style()).turnout_deg)
     targets = [
@@ -124,6 +127,7 @@ def interpolate(
     kind: Interpolation = Interpolation.EXPRESSIVE,
     *,
     ways: Ways | None = None,
+    hold: float | None = None,
     progress: Progress | None = None,
 ) -> Motion:
     """Fill in the movement between the key poses.
@@ -133,6 +137,7 @@ def interpolate(
         effort: Quality of the movement.
         kind: Expressive, or a baseline.
         ways: Those of `ways_of` with the same arguments, where they are wanted afterwards.
+        hold: Stillness after the last beat, s; `HOLD` if None.
         progress: Called with (done, all).
 
     Returns:
@@ -141,7 +146,7 @@ def interpolate(
     """
     stations = choreography.stations
     times = COUNT_IN + np.array([station.time for station in stations])
-    count = round((times[-1] + HOLD) * RATE) + 1
+    count = round((times[-1] + (HOLD if hold is None else hold)) * RATE) + 1
     time = np.arange(count) / RATE
     model = choreography.solver.model
     qpos = np.empty((count, model.nq))
@@ -222,19 +227,11 @@ def _hold(
 
 def _round_corners(model: mujoco.MjModel, qpos: Array) -> Array:
     """Average over Parzen windows; quaternions nearly agree within one, so theirs is sound too."""
-    legs = np.zeros(model.nq, dtype=bool)
-    for j in range(model.njnt):
-        name = model.joint(j).name
-        width = 7 if name == "root" else 1
-        start = int(model.jnt_qposadr[j])
-        legs[start : start + width] = any(part in name for part in _LEG_JOINTS)
+    legs = bearing_columns(model)
     smooth = _averaged(qpos, ROUNDING)
     smooth[:, legs] = _averaged(qpos[:, legs], LEG_ROUNDING)
     smooth[:, 3:7] /= np.linalg.norm(smooth[:, 3:7], axis=1, keepdims=True)
     return smooth
-
-
-_LEG_JOINTS = ("root", "hip", "knee", "ankle", "toe")
 
 
 def _averaged(values: Array, width: float) -> Array:

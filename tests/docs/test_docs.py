@@ -29,6 +29,7 @@ from enpointe.notation import (
     score_from_json,
     score_to_json,
 )
+from enpointe.sim.balance_table import COLUMNS
 
 ROOT = Path(__file__).resolve().parents[2]
 if not (ROOT / "docs" / "index.md").is_file():
@@ -148,7 +149,8 @@ def test_every_command_exists(page: str, words: list[str]) -> None:
 
         find_effort(given["--effort"])
     if verb in ("perform", "compare") and rest and not rest[0].endswith(".bmn"):
-        assert rest[0] in enpointe.notation.shipped_scores()
+        poses = enpointe.notation.names() if "--hold" in rest else ()
+        assert rest[0] in (*enpointe.notation.shipped_scores(), *poses)
 
 
 NOT_YET = {"check"}
@@ -343,9 +345,14 @@ def test_fields_of_a_physical_performance_and_a_comparison(phrase: Score) -> Non
     figures = comparison.summary()
     physical = comparison.performances["physical"].summary()
     assert set(physical) == fields("kinematic") | fields("physical")
+    assert fields("wholebody") == {"qp_failures"}
     assert set(figures) == {"variants", "differences"}
     for difference in figures["differences"]:
         assert set(difference) == fields("difference")
+
+
+def test_columns_of_the_balance_table() -> None:
+    assert fields("balance") == set(COLUMNS)
 
 
 def test_fields_of_poses(phrase: Score) -> None:

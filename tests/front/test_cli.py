@@ -258,3 +258,12 @@ def test_it_runs_as_a_module_too() -> None:
         [sys.executable, "-m", "enpointe", "--help"], capture_output=True, text=True, check=True
     )
     assert "perform" in said.stdout
+
+
+@pytest.mark.slow
+def test_a_position_is_held_by_its_name(home: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    arguments = ["perform", "pose first arabesque", "--controller", "wholebody", "--hold", "1"]
+    assert _run([*arguments, "--no-video", "--json", "--out", "held"]) == 0
+    figures = one_object(capfd.readouterr().out)
+    assert figures["completed"] is True
+    assert (home / "held" / "balance.csv").exists()
