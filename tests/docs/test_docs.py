@@ -320,11 +320,15 @@ def test_every_table_stands_somewhere(tables: ModuleType) -> None:
     assert used == set(tables.TABLES)
 
 
-def fields(mark: str) -> set[str]:
-    """The names in the first column of the table of figures.md after `<!-- fields: mark -->`."""
+def table(mark: str) -> str:
+    """The table of figures.md after `<!-- fields: mark -->`."""
     text = (ROOT / "docs" / "figures.md").read_text(encoding="utf-8")
-    part = text.split(f"<!-- fields: {mark} -->\n\n", 1)[1].split("\n\n", 1)[0]
-    return set(re.findall(r"^\| `(\w+)` \|", part, flags=re.MULTILINE))
+    return text.split(f"<!-- fields: {mark} -->\n\n", 1)[1].split("\n\n", 1)[0]
+
+
+def fields(mark: str) -> set[str]:
+    """The names in the first column of that table."""
+    return set(re.findall(r"^\| `(\w+)` \|", table(mark), flags=re.MULTILINE))
 
 
 @pytest.fixture(scope="module")
@@ -349,8 +353,7 @@ def test_fields_of_a_physical_performance_and_a_comparison(phrase: Score) -> Non
 
 
 def test_fields_of_poses(phrase: Score) -> None:
-    text = (ROOT / "docs" / "figures.md").read_text(encoding="utf-8")
-    (row,) = re.findall(r"^\| `rules` \|.*$", text, flags=re.MULTILINE)
+    (row,) = re.findall(r"^\| `rules` \|.*$", table("pose"), flags=re.MULTILINE)
     for pose in enpointe.pose(phrase).summary()["poses"]:
         assert set(pose) == fields("pose")
         for rule in pose["rules"]:
