@@ -322,11 +322,15 @@ def test_every_table_stands_somewhere(tables: ModuleType) -> None:
     assert used == set(tables.TABLES)
 
 
-def fields(mark: str) -> set[str]:
-    """The names in the first column of the table of figures.md after `<!-- fields: mark -->`."""
+def table(mark: str) -> str:
+    """The table of figures.md after `<!-- fields: mark -->`."""
     text = (ROOT / "docs" / "figures.md").read_text(encoding="utf-8")
-    part = text.split(f"<!-- fields: {mark} -->\n\n", 1)[1].split("\n\n", 1)[0]
-    return set(re.findall(r"^\| `(\w+)` \|", part, flags=re.MULTILINE))
+    return text.split(f"<!-- fields: {mark} -->\n\n", 1)[1].split("\n\n", 1)[0]
+
+
+def fields(mark: str) -> set[str]:
+    """The names in the first column of that table."""
+    return set(re.findall(r"^\| `(\w+)` \|", table(mark), flags=re.MULTILINE))
 
 
 @pytest.fixture(scope="module")
@@ -356,8 +360,7 @@ def test_columns_of_the_balance_table() -> None:
 
 
 def test_fields_of_poses(phrase: Score) -> None:
-    text = (ROOT / "docs" / "figures.md").read_text(encoding="utf-8")
-    (row,) = re.findall(r"^\| `rules` \|.*$", text, flags=re.MULTILINE)
+    (row,) = re.findall(r"^\| `rules` \|.*$", table("pose"), flags=re.MULTILINE)
     for pose in enpointe.pose(phrase).summary()["poses"]:
         assert set(pose) == fields("pose")
         for rule in pose["rules"]:

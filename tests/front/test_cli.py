@@ -252,10 +252,14 @@ def test_the_program_refuses_as_the_function_does(tmp_path: Path) -> None:
     assert [p.name for p in tmp_path.iterdir()] == ["bad.bmn"]
 
 
-def test_it_runs_as_a_module_too() -> None:
+def test_it_runs_as_a_module_too(tmp_path: Path) -> None:
     """Where the command's folder is not on the path, `python -m enpointe` does the same."""
     said = subprocess.run(
-        [sys.executable, "-m", "enpointe", "--help"], capture_output=True, text=True, check=True
+        [sys.executable, "-m", "enpointe", "--help"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=True,
     )
     assert "perform" in said.stdout
 
