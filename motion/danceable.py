@@ -1,0 +1,173 @@
+"""From a motion as composed to one that a body can dance: the same movement over moved weight.
+
+The contacts and the centre of mass are planned (`contact_schedule`, `plan_weight`); then every
+sample is posed again by differential inverse kinematics (mink), from the pose as composed:
+
+- soles near the floor keep their places in the world, so that feet neither skate nor sink;
+- the centre of mass follows the plan;
+- trunk and pelvis keep their directions, and joints their angles, as far as that allows.
+
+Beats are kept: no sample is moved in time. Where the floor cannot give what a motion needs,
+`WeightPlan.outside` says when and by how much.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import mink
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from enpointe.motion.contacts import ContactSchedule, contact_schedule
+from enpointe.motion.motion import Motion
+from enpointe.motion.weight_plan import WeightPlan, plan_weight
+from enpointe.notation import Side
+
+__all__ = ["Danceable", "make_danceable"]
+
+Array = NDArray[np.float64]
+
+_DT = 1.0
+"""Nominal step of the differential IK: with unit gain a step closes the whole linear error."""
+_STEPS = 2
+"""Steps a sample: neighbours are so near that two close the error."""
+_GROUND = 0.03
+"""m: at this height above the floor a sole holds to its place in the world half as much."""
+_SOLE, _WEIGHT, _HEIGHT, _TRUNK, _PELVIS = 40.0, 10.0, 0.5, 1.0, 0.6
+"""Costs of places (1/m) and directions (1/rad)."""
+_POSTURE, _BEARING_LEG = 0.3, 0.05
+"""Costs of joint angles (1/rad): of what moves freely, and of a leg that stands, whose hip and
+ankle must give way for the weight to move."""
+_STRAIGHT = 0.3
+"""rad: a standing knee bent this much gives way too; one that is straight stays straight."""
+
+
+@dataclass(frozen=True)
+class Danceable:
+    """A motion that can be danced, and what it was made with.
+
+    Attributes:
+        motion: The same samples in time, posed again.
+        contacts: Its planned contacts.
+        weight: Its planned centre of mass.
+    """
+
+    motion: Motion
+    contacts: ContactSchedule
+    weight: WeightPlan
+
+
+def make_danceable(
+    motion: Motion, *, progress: Callable[[int, int], None] | None = None
+) -> Danceable:
+    """Make a motion that gravity and the floor allow.
+
+    Args:
+        motion: As composed.
+        progress: Called with (done, all) now and then.
+    """
+    contacts = contact_schedule(motion)
+    weight = plan_weight(motion, contacts)
+    qpos = _Poser(motion, contacts, weight).pose_all(progress)
+    moved = Motion.from_qpos(
+        motion.model, motion.time, qpos, events=motion.events, name=motion.name
+    )
+    return Danceable(moved, contacts, weight)
+
+
+class _Poser:
+    """Every sample of a motion posed again over the planned weight."""
+
+    def __init__(self, motion: Motion, contacts: ContactSchedule, weight: WeightPlan) -> None:
+        self._motion, self._contacts, self._weight = motion, contacts, weight
+        model = motion.model
+        self._configuration = mink.Configuration(model, q=motion.qpos[0])
+        self._data = mujoco.MjData(model)
+        names = [model.geom(int(g)).name for g in contacts.soles]
+        self._soles = [
+            mink.FrameTask(name, "geom", position_cost=_SOLE, orientation_cost=0.0)
+            for name in names
+        ]
+        self._com = mink.ComTask(cost=[_WEIGHT, _WEIGHT, _HEIGHT])
+        self._trunk = mink.FrameTask("torso", "body", position_cost=0.0, orientation_cost=_TRUNK)
+        self._pelvis = mink.FrameTask("pelvis", "body", position_cost=0.0, orientation_cost=_PELVIS)
+        self._posture = mink.PostureTask(model, cost=np.full(model.nv, _POSTURE))
+        self._tasks = [*self._soles, self._com, self._trunk, self._pelvis, self._posture]
+        self._limits = [mink.ConfigurationLimit(model, gain=1.0)]
+        self._legs = _legs(model, contacts.soles)
+
+    def pose_all(self, progress: Callable[[int, int], None] | None) -> Array:
+        model, motion = self._motion.model, self._motion
+        qpos = np.empty_like(motion.qpos)
+        moved = np.zeros(model.nv)
+        for i, asked in enumerate(motion.qpos):
+            start = asked.copy()
+            mujoco.mj_integratePos(model, start, moved, 1.0)
+            qpos[i] = self._pose(i, start)
+            mujoco.mj_differentiatePos(model, moved, 1.0, asked, qpos[i])
+            if progress is not None and i % 50 == 0:
+                progress(i, len(qpos))
+        return qpos
+
+    def _pose(self, i: int, start: Array) -> Array:
+        self._ask(i)
+        self._configuration.update(start)
+        for _ in range(_STEPS):
+            step = mink.solve_ik(
+                self._configuration, self._tasks, _DT, "daqp", 1e-6, limits=self._limits
+            )
+            self._configuration.integrate_inplace(step, _DT)
+        return np.array(self._configuration.q)
+
+    def _ask(self, i: int) -> None:
+        model, data = self._motion.model, self._data
+        data.qpos[:] = self._motion.qpos[i]
+        mujoco.mj_kinematics(model, data)
+        heights = self._contacts.points[i, :, 2]
+        for task, geom, height in zip(self._soles, self._contacts.soles, heights, strict=True):
+            task.set_position_cost(_SOLE / (1.0 + (max(height, 0.0) / _GROUND) ** 2))
+            task.set_target(mink.SE3.from_translation(data.geom_xpos[geom]))
+        self._com.set_target(self._weight.at(float(self._motion.time[i]))[0])
+        for task, body in ((self._trunk, "torso"), (self._pelvis, "pelvis")):
+            task.set_target(mink.SE3.from_rotation(mink.SO3(data.body(body).xquat)))
+        self._posture.cost = self._posture_cost(i)
+        self._posture.set_target(self._motion.qpos[i])
+
+    def _posture_cost(self, i: int) -> Array:
+        model = self._motion.model
+        cost = np.full(model.nv, _POSTURE)
+        cost[:6] = 0.0
+        for leg in self._legs:
+            if self._contacts.bears[i, leg.soles].any():
+                cost[leg.dofs] = _BEARING_LEG
+                bend = self._motion.qpos[i, model.jnt_qposadr[model.dof_jntid[leg.knee]]]
+                cost[leg.knee] += _POSTURE * np.exp(-((bend / _STRAIGHT) ** 2))
+        return cost
+
+
+@dataclass(frozen=True)
+class _Leg:
+    """A leg's DoFs, its knee's, and its rows among the soles."""
+
+    dofs: NDArray[np.int64]
+    knee: int
+    soles: NDArray[np.int64]
+
+
+def _legs(model: mujoco.MjModel, soles: NDArray[np.int64]) -> tuple[_Leg, ...]:
+    bodies = model.geom_bodyid[soles]
+    legs = []
+    for side in Side:
+        foot, toe = model.body(f"{side}_foot").id, model.body(f"{side}_toe").id
+        chain = [model.body(f"{side}_{part}").id for part in ("thigh", "shank", "foot")]
+        legs.append(
+            _Leg(
+                dofs=np.flatnonzero(np.isin(model.dof_bodyid, chain)),
+                knee=int(model.joint(f"{side}_knee_bend").dofadr[0]),
+                soles=np.flatnonzero(np.isin(bodies, (foot, toe))),
+            )
+        )
+    return tuple(legs)

@@ -1,0 +1,217 @@
+"""Where the weight must go for a motion to be possible: the centre of mass over time, in CasADi.
+
+The floor can only push, and only under the feet. With the height c_z and the angular momentum L of
+the motion given, the zero-moment point of a centre of mass c is
+
+    p_x = c_x - (c_z c_x'' + L_y' / m) / (c_z'' + g),
+    p_y = c_y - (c_z c_y'' - L_x' / m) / (c_z'' + g)
+
+(Vukobratovic and Borovac 2004; Kajita et al. 2003, eq. 3, with L). The plan is the smoothest motion
+near the one asked whose p stays inside the planned support, a convex quadratic programme:
+
+    min  w_c |c - c_asked|^2 + w_u |c'''|^2 + w_s sum s + w_p |p - middle|^2
+    s.t. A_k p_k <= b_k - margin + s_k,  s_k >= 0,  c'' = 0 in the air.
+
+A plan that cannot be has s > 0 there: how far outside the feet the floor would have to push.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import casadi as ca
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter1d
+
+from enpointe.models.foot_positions import support_hull
+from enpointe.models.rules.balance import centroid, half_planes
+from enpointe.motion.contacts import ContactSchedule
+from enpointe.motion.motion import Motion
+
+__all__ = ["PLAN_RATE", "WeightPlan", "plan_weight"]
+
+Array = NDArray[np.float64]
+
+PLAN_RATE = 50.0
+"""Knots of the plan a second."""
+MARGIN = 0.015
+"""How far inside the support the zero-moment point stays, m, where the support is broad enough."""
+_NEAR, _SMOOTH, _MIDDLE, _OUTSIDE = 30.0, 2e-5, 1.0, 300.0
+"""Weights: near what is asked (1/m^2), smooth (s^6/m^2), in the middle (1/m^2), outside (1/m)."""
+_MOMENTUM_SIGMA = 0.03
+"""s: differences of differences of sampled poses need some averaging; muscles do as much."""
+
+
+@dataclass(frozen=True)
+class WeightPlan:
+    """The centre of mass of a motion that can be danced, at K knots.
+
+    Attributes:
+        time: (K,), s.
+        com: (K, 3), m.
+        velocity: (K, 3), m/s.
+        acceleration: (K, 3), m/s^2.
+        zmp: (K, 2), m.
+        outside: (K,), how far outside its support the zero-moment point is planned, m: 0 where the
+            floor can give what the motion needs.
+        shifted: (K,), how far the centre of mass is from where the motion had it, m.
+    """
+
+    time: Array
+    com: Array
+    velocity: Array
+    acceleration: Array
+    zmp: Array
+    outside: Array
+    shifted: Array
+
+    def at(self, t: float) -> tuple[Array, Array, Array]:
+        """Place, velocity and acceleration (3,) at `t` seconds; at rest beyond both ends."""
+        if t >= self.time[-1] or t <= self.time[0]:
+            end = -1 if t >= self.time[-1] else 0
+            return self.com[end], np.zeros(3), np.zeros(3)
+        i = int((t - self.time[0]) * PLAN_RATE)
+        i = min(i, len(self.time) - 2)
+        w = (t - self.time[i]) * PLAN_RATE
+        com, velocity, acceleration = (
+            (1 - w) * rows[i] + w * rows[i + 1]
+            for rows in (self.com, self.velocity, self.acceleration)
+        )
+        return com, velocity, acceleration
+
+
+def plan_weight(motion: Motion, contacts: ContactSchedule) -> WeightPlan:
+    """Plan the centre of mass of a motion.
+
+    Args:
+        motion: As it was composed, balanced or not.
+        contacts: Its schedule.
+    """
+    time = np.arange(motion.time[0], motion.time[-1] + 0.5 / PLAN_RATE, 1.0 / PLAN_RATE)
+    com, momentum = _centroidal(motion, time)
+    sigma = _MOMENTUM_SIGMA * PLAN_RATE
+    height = gaussian_filter1d(com[:, 2], 2 * sigma)
+    rise = np.gradient(np.gradient(height, time), time)
+    twist = np.gradient(gaussian_filter1d(momentum, sigma, axis=0), time, axis=0)
+    gravity = float(-motion.model.opt.gravity[2])
+    load = np.maximum(rise + gravity, 0.2 * gravity)
+    arm = height / load
+    mass = float(motion.model.body_mass.sum())
+    offset = np.stack([-twist[:, 1], twist[:, 0]], axis=1) / (mass * load)[:, None]
+    hulls = [
+        support_hull(contacts.points[i, contacts.bears[i], :2])
+        for i in (contacts.index(float(t)) for t in time)
+    ]
+    place, velocity, acceleration, zmp, outside = _solve(com[:, :2], arm, offset, hulls)
+    lift = np.stack([height, np.gradient(height, time), rise])
+    return WeightPlan(
+        time,
+        np.column_stack([place, lift[0]]),
+        np.column_stack([velocity, lift[1]]),
+        np.column_stack([acceleration, lift[2]]),
+        zmp,
+        outside,
+        np.linalg.norm(place - com[:, :2], axis=1),
+    )
+
+
+def _centroidal(motion: Motion, time: Array) -> tuple[Array, Array]:
+    """Centre of mass (K, 3) and angular momentum about it (K, 3) of the motion."""
+    model = motion.model
+    data = mujoco.MjData(model)
+    com, momentum = np.empty((len(time), 3)), np.empty((len(time), 3))
+    for k, t in enumerate(time):
+        data.qpos[:], data.qvel[:], _ = motion.sample(float(t))
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        mujoco.mj_comVel(model, data)
+        mujoco.mj_subtreeVel(model, data)
+        com[k], momentum[k] = data.subtree_com[0], data.subtree_angmom[0]
+    return com, momentum
+
+
+def _solve(
+    asked: Array, arm: Array, offset: Array, hulls: list[Array]
+) -> tuple[Array, Array, Array, Array, Array]:
+    count, dt = len(asked), 1.0 / PLAN_RATE
+    c, v, a = (ca.MX.sym(name, 2, count) for name in "cva")
+    u = ca.MX.sym("u", 2, count - 1)
+    s = ca.MX.sym("s", count)
+    rows: list[ca.MX] = []
+    bounds: list[tuple[float, float]] = []
+
+    def add(expression: ca.MX, low: float, high: float) -> None:
+        rows.append(ca.vec(expression))
+        bounds.extend([(low, high)] * expression.numel())
+
+    now, then = slice(0, count - 1), slice(1, count)
+    add(c[:, then] - c[:, now] - dt * v[:, now] - dt**2 / 2 * a[:, now] - dt**3 / 6 * u, 0, 0)
+    add(v[:, then] - v[:, now] - dt * a[:, now] - dt**2 / 2 * u, 0, 0)
+    add(a[:, then] - a[:, now] - dt * u, 0, 0)
+    for still in (v[:, 0], a[:, 0], v[:, -1], a[:, -1]):
+        add(still, 0, 0)
+    zmp = c - a * ca.DM(np.tile(arm, (2, 1))) + ca.DM(offset.T)
+    middle = np.array(asked)
+    standing = np.zeros(count)
+    for k, hull in enumerate(hulls):
+        if len(hull) == 0:
+            add(a[:, k], 0, 0)
+            continue
+        standing[k] = 1.0
+        middle[k] = centroid(hull) if len(hull) > 2 else hull.mean(axis=0)
+        normals, offsets = _shrunk(hull)
+        add(ca.DM(normals) @ zmp[:, k] - s[k] - ca.DM(offsets), -ca.inf, 0)
+    weight = ca.DM(np.tile(standing, (2, 1)))
+    cost = (
+        _NEAR * ca.sumsqr(c - ca.DM(asked.T))
+        + _SMOOTH * ca.sumsqr(u)
+        + _OUTSIDE * ca.sum1(s)
+        + _MIDDLE * ca.sumsqr(weight * (zmp - ca.DM(middle.T)))
+    )
+    unknowns = ca.veccat(c, v, a, u, s)
+    start = ca.veccat(
+        ca.DM(asked.T), ca.DM(4 * count, 1), ca.DM(2 * (count - 1), 1), ca.DM(count, 1)
+    )
+    free = 6 * count + 2 * (count - 1)
+    lower = np.concatenate([np.full(free, -np.inf), np.zeros(count)])
+    solver = ca.nlpsol(
+        "weight",
+        "ipopt",
+        {"x": unknowns, "f": cost, "g": ca.vertcat(*rows)},
+        {
+            "ipopt": {
+                "print_level": 0,
+                "sb": "yes",
+                "mehrotra_algorithm": "yes",
+                "hessian_constant": "yes",
+                "jac_c_constant": "yes",
+                "jac_d_constant": "yes",
+            },
+            "print_time": False,
+        },
+    )
+    low, high = np.array(bounds).T
+    found = solver(x0=start, lbx=lower, ubx=np.inf, lbg=low, ubg=high)["x"]
+    read = ca.Function("read", [unknowns], [c.T, v.T, a.T, zmp.T, s])
+    return tuple(np.array(part).squeeze() for part in read(found))  # type: ignore[return-value]
+
+
+def _shrunk(hull: Array) -> tuple[Array, Array]:
+    """Half-planes of the support, drawn in by the margin or by half of what room there is."""
+    if len(hull) < 3:
+        return _around(hull)
+    normals, offsets = half_planes(hull)
+    room = float(np.min(offsets - normals @ centroid(hull)))
+    return normals, offsets - min(MARGIN, 0.5 * room)
+
+
+def _around(hull: Array) -> tuple[Array, Array]:
+    """A support of one or two points: the box along it."""
+    along = hull[-1] - hull[0]
+    length = float(np.linalg.norm(along))
+    e = along / length if length > 0 else np.array([1.0, 0.0])
+    across = np.array([-e[1], e[0]])
+    normals = np.array([e, -e, across, -across])
+    return normals, np.array([max(n @ p for p in hull) for n in normals])
