@@ -21,7 +21,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from enpointe.motion.contacts import ContactSchedule, contact_schedule
+from enpointe.motion.contact_schedule import ContactSchedule, contact_schedule
 from enpointe.motion.motion import Motion
 from enpointe.motion.weight_plan import WeightPlan, plan_weight
 from enpointe.notation import Side

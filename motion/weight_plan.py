@@ -27,7 +27,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from enpointe.models.foot_positions import support_hull
 from enpointe.models.rules.balance import centroid, half_planes
-from enpointe.motion.contacts import ContactSchedule
+from enpointe.motion.contact_schedule import ContactSchedule
 from enpointe.motion.motion import Motion
 
 __all__ = ["PLAN_RATE", "WeightPlan", "plan_weight"]

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from enpointe.models import dancer_model
 from enpointe.models.foot_positions import support_hull
 from enpointe.motion import Motion
-from enpointe.motion.contacts import ON_FLOOR, SHORTEST, ContactSchedule, contact_schedule
+from enpointe.motion.contact_schedule import ON_FLOOR, SHORTEST, ContactSchedule, contact_schedule
 from enpointe.motion.danceable import Danceable, make_danceable
 from enpointe.motion.weight_plan import PLAN_RATE, WeightPlan, plan_weight
 from enpointe.sim.balance import margin
