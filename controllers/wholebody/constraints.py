@@ -1,0 +1,171 @@
+"""What the body can't do otherwise: rows A x = b, rows G x <= h, and bounds on x.
+
+x = [qacc, lambda], see `Instant`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple, Protocol
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from enpointe.controllers.wholebody.instant import Instant
+
+__all__ = [
+    "Bounds",
+    "Constraint",
+    "Equality",
+    "FloatingBase",
+    "FrictionPyramids",
+    "JointRange",
+    "Limits",
+    "TorqueLimits",
+    "joint_torques",
+]
+
+Array = NDArray[np.float64]
+
+
+class Equality(NamedTuple):
+    """Rows matrix x = target.
+
+    Attributes:
+        matrix: (R, n).
+        target: (R,).
+    """
+
+    matrix: Array
+    target: Array
+
+
+class Limits(NamedTuple):
+    """Rows low <= matrix x <= high.
+
+    Attributes:
+        matrix: (R, n).
+        low: (R,).
+        high: (R,).
+    """
+
+    matrix: Array
+    low: Array
+    high: Array
+
+
+class Bounds(NamedTuple):
+    """Bounds low <= x <= high on the unknowns, (n,) each."""
+
+    low: Array
+    high: Array
+
+
+class Constraint(Protocol):
+    """One thing that holds whatever the tasks wish."""
+
+    name: ClassVar[str]
+
+    def limits(self, instant: Instant) -> Equality | Limits | Bounds:
+        """Its rows or bounds at this moment."""
+
+
+@dataclass(frozen=True, slots=True)
+class FloatingBase:
+    """No muscle acts on the root:  M_b qacc + h_b = J_b^T f  (its six rows of the dynamics)."""
+
+    name: ClassVar[str] = "floating base"
+
+    def limits(self, instant: Instant) -> Equality:
+        matrix = np.hstack([instant.mass_matrix[:6], -instant.force_matrix[:6]])
+        return Equality(matrix, -instant.bias[:6])
+
+
+@dataclass(frozen=True, slots=True)
+class TorqueLimits:
+    """Joints are as strong as they are:  |M_j qacc + h_j - J_j^T f| <= limit.
+
+    Attributes:
+        limit: (nu,), N m.
+    """
+
+    name: ClassVar[str] = "torque limits"
+    limit: Array
+
+    def limits(self, instant: Instant) -> Limits:
+        dofs = instant.actuated
+        matrix = np.hstack([instant.mass_matrix[dofs], -instant.force_matrix[dofs]])
+        bias = instant.bias[dofs]
+        return Limits(matrix, -self.limit - bias, self.limit - bias)
+
+
+@dataclass(frozen=True, slots=True)
+class FrictionPyramids:
+    """The floor pushes, within its friction:  lambda >= 0 for every edge of every pyramid."""
+
+    name: ClassVar[str] = "friction pyramids"
+
+    def limits(self, instant: Instant) -> Bounds:
+        low = np.full(instant.size, -np.inf)
+        low[instant.nv :] = 0.0
+        return Bounds(low, np.full(instant.size, np.inf))
+
+
+@dataclass(frozen=True, slots=True)
+class JointRange:
+    """Joints stay within their range and speed, as bounds on acceleration (Del Prete 2018, RA-L 3):
+
+        q + v T + qacc T^2 / 2 <= q_max,    v + qacc T <= v_max,
+
+    and so at the lower end, a horizon T ahead. Where both ends can't be had the nearer one is kept.
+
+    Attributes:
+        dofs: Of the limited joints, (J,).
+        angles: Their places in qpos, (J,).
+        low: (J,), rad.
+        high: (J,), rad.
+        horizon: T, s.
+        speed: v_max, rad/s.
+    """
+
+    name: ClassVar[str] = "joint range"
+    dofs: NDArray[np.int64]
+    angles: NDArray[np.int64]
+    low: Array
+    high: Array
+    horizon: float = 0.03
+    speed: float = 25.0
+
+    @classmethod
+    def of(cls, model: mujoco.MjModel) -> JointRange:
+        """Of all limited hinges of a model."""
+        limited = np.flatnonzero(model.jnt_limited)
+        ends = model.jnt_range[limited]
+        return cls(
+            np.array(model.jnt_dofadr[limited]),
+            np.array(model.jnt_qposadr[limited]),
+            np.array(ends[:, 0]),
+            np.array(ends[:, 1]),
+        )
+
+    def limits(self, instant: Instant) -> Bounds:
+        ahead = self.horizon
+        q, v = instant.qpos[self.angles], instant.qvel[self.dofs]
+        drift = q + v * ahead
+        high = np.minimum(2 * (self.high - drift) / ahead**2, (self.speed - v) / ahead)
+        low = np.maximum(2 * (self.low - drift) / ahead**2, (-self.speed - v) / ahead)
+        crossed = low > high
+        middle = 0.5 * (self.low + self.high)
+        low = np.where(crossed & (q > middle), high, low)
+        high = np.where(crossed & (q <= middle), low, high)
+        bounds = Bounds(np.full(instant.size, -np.inf), np.full(instant.size, np.inf))
+        bounds.low[self.dofs], bounds.high[self.dofs] = low, high
+        return bounds
+
+
+def joint_torques(instant: Instant, unknowns: Array) -> Array:
+    """tau = M_j qacc + h_j - J_j^T f, (nu,), N m, at a solution."""
+    qacc, edges = unknowns[: instant.nv], unknowns[instant.nv :]
+    forces = instant.mass_matrix @ qacc + instant.bias - instant.force_matrix @ edges
+    return np.asarray(forces[instant.actuated])

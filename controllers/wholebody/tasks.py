@@ -1,0 +1,256 @@
+"""What the body should do, each wish a small class: rows A x = b, kept by weighted least squares.
+
+x = [qacc, lambda], see `Instant`. A task's rows are in its own unit; its weight says what a squared
+unit costs. Gains are per second squared (stiffness) and per second (damping): a task alone would
+make its error obey  e'' + damping e' + stiffness e = 0.
+
+The tasks and their weights grew from trials that held nine poses on one leg; leaving `CentreOfMass`
+out made the dancer fall in all that were tried without it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from enpointe.controllers.wholebody.goal import Goal
+from enpointe.controllers.wholebody.instant import Instant, skew
+
+__all__ = [
+    "AngularMomentum",
+    "CentreOfMass",
+    "Contact",
+    "Orientation",
+    "Posture",
+    "Rows",
+    "SwingFoot",
+    "Task",
+]
+
+Array = NDArray[np.float64]
+
+
+class Rows(NamedTuple):
+    """Rows of a least-squares problem: weight |matrix x - target|^2.
+
+    Attributes:
+        matrix: (R, n).
+        target: (R,).
+        weight: (R,).
+    """
+
+    matrix: Array
+    target: Array
+    weight: Array
+
+
+class Task(Protocol):
+    """One wish."""
+
+    name: ClassVar[str]
+
+    def rows(self, instant: Instant, goal: Goal) -> Rows:
+        """Its rows at this moment; none where it does not apply."""
+
+
+@dataclass(frozen=True, slots=True)
+class CentreOfMass:
+    """The floor's forces drive the centre of mass:  sum f / m - g = c''.
+
+    Horizontally by its divergent component (capture point) xi = c + c' / omega with
+    omega = sqrt(g / c_z): the zero-moment point is asked to be p = p_r + k (xi - xi_r), so
+
+        c'' = c''_r + omega^2 (k - 1) (c_r - c) + omega k (c'_r - c'),
+
+    whose xi-error decays at omega (k - 1) (Englsberger et al. 2013; Hof et al. 2005). Vertically a
+    spring and damper.
+
+    Attributes:
+        weight: Per (m/s^2)^2.
+        capture_gain: k.
+        stiffness: Vertical, 1/s^2.
+        damping: Vertical, 1/s.
+    """
+
+    name: ClassVar[str] = "centre of mass"
+    weight: float = 10.0
+    capture_gain: float = 5.0
+    stiffness: float = 100.0
+    damping: float = 20.0
+
+    def rows(self, instant: Instant, goal: Goal) -> Rows:
+        if len(instant.edges) == 0:
+            return _nothing(instant)
+        matrix = np.zeros((3, instant.size))
+        matrix[:, instant.nv :] = instant.edges.T / instant.mass
+        target = self.acceleration(instant, goal)
+        target[2] += instant.gravity
+        return Rows(matrix, target, np.full(3, self.weight))
+
+    def acceleration(self, instant: Instant, goal: Goal) -> Array:
+        """The acceleration asked for, (3,), m/s^2."""
+        omega = np.sqrt(instant.gravity / max(instant.com[2], 0.1))
+        level = omega**2 * (self.capture_gain - 1.0)
+        stiffness = np.array([level, level, self.stiffness])
+        damping = np.array([omega * self.capture_gain] * 2 + [self.damping])
+        feedback = stiffness * (goal.com - instant.com)
+        feedback += damping * (goal.com_velocity - instant.com_velocity)
+        return np.asarray(goal.com_acceleration + feedback)
+
+
+@dataclass(frozen=True, slots=True)
+class AngularMomentum:
+    """The floor's forces turn the body:  sum (p - c) x f = L'_r + k (L_r - L), about the CoM.
+
+    Attributes:
+        weight: Per (N m)^2.
+        gain: k, 1/s.
+    """
+
+    name: ClassVar[str] = "angular momentum"
+    weight: float = 0.005
+    gain: float = 5.0
+
+    def rows(self, instant: Instant, goal: Goal) -> Rows:
+        if len(instant.edges) == 0:
+            return _nothing(instant)
+        arms = instant.points[instant.edge_point] - instant.com
+        matrix = np.zeros((3, instant.size))
+        matrix[:, instant.nv :] = (skew(arms) @ instant.edges[:, :, None])[:, :, 0].T
+        error = goal.angular_momentum - instant.angular_momentum
+        target = goal.angular_momentum_rate + self.gain * error
+        return Rows(matrix, target, np.full(3, self.weight))
+
+
+@dataclass(frozen=True, slots=True)
+class Contact:
+    """A sole that bears stays where it is:  J qacc = -J' v - k J v.
+
+    A wish and not a constraint, since six points of one foot can't all be kept independently.
+
+    Attributes:
+        weight: Per (m/s^2)^2.
+        damping: k, 1/s.
+    """
+
+    name: ClassVar[str] = "contact"
+    weight: float = 100.0
+    damping: float = 30.0
+
+    def rows(self, instant: Instant, goal: Goal) -> Rows:
+        jacobian = instant.jacobians[instant.active].reshape(-1, instant.nv)
+        matrix = np.zeros((len(jacobian), instant.size))
+        matrix[:, : instant.nv] = jacobian
+        target = -instant.drifts[instant.active].ravel()
+        target -= self.damping * (jacobian @ instant.qvel)
+        return Rows(matrix, target, np.full(len(target), self.weight))
+
+
+@dataclass(frozen=True, slots=True)
+class Orientation:
+    """The pelvis turns with its reference:  omega' = omega'_r + k e + d (omega_r - omega).
+
+    e is the rotation vector from the pelvis to its reference, and omega its angular velocity, all
+    in the pelvis' own frame as MuJoCo has them for a free joint. In the air the weight is small:
+    there no force can turn the body as a whole, and the limbs would be spoilt for it.
+
+    Attributes:
+        weight: Per (rad/s^2)^2, on the floor.
+        weight_aloft: The same without any contact.
+        stiffness: k, 1/s^2.
+        damping: d, 1/s.
+    """
+
+    name: ClassVar[str] = "orientation"
+    weight: float = 2.0
+    weight_aloft: float = 0.04
+    stiffness: float = 100.0
+    damping: float = 20.0
+
+    def rows(self, instant: Instant, goal: Goal) -> Rows:
+        matrix = np.zeros((3, instant.size))
+        matrix[:, 3:6] = np.eye(3)
+        between = instant.root_rotation.T @ goal.root_rotation
+        target = self.stiffness * _rotation_vector(between)
+        target += self.damping * (between @ goal.qvel[3:6] - instant.qvel[3:6])
+        target += between @ goal.qacc[3:6]
+        weight = self.weight if len(instant.active) else self.weight_aloft
+        return Rows(matrix, target, np.full(3, weight))
+
+
+@dataclass(frozen=True, slots=True)
+class Posture:
+    """Every joint follows its reference:  q'' = q''_r + k (q_r - q) + d (q'_r - q').
+
+    Attributes:
+        weight: Per (rad/s^2)^2.
+        stiffness: k, 1/s^2.
+        damping: d, 1/s.
+    """
+
+    name: ClassVar[str] = "posture"
+    weight: float = 0.2
+    stiffness: float = 100.0
+    damping: float = 20.0
+
+    def rows(self, instant: Instant, goal: Goal) -> Rows:
+        dofs = instant.actuated
+        angles = dofs + len(instant.qpos) - instant.nv
+        matrix = np.zeros((len(dofs), instant.size))
+        matrix[np.arange(len(dofs)), dofs] = 1.0
+        target = goal.qacc[dofs] + self.stiffness * (goal.qpos[angles] - instant.qpos[angles])
+        target += self.damping * (goal.qvel[dofs] - instant.qvel[dofs])
+        return Rows(matrix, target, np.full(len(dofs), self.weight))
+
+
+@dataclass(frozen=True, slots=True)
+class SwingFoot:
+    """A foot on its way goes where its reference is, seen from the centre of mass.
+
+    For each sole that is off the floor, or not meant to bear:
+    J qacc = p''_r - J' v + k ((p_r - c_r) - (p - c)) + d ((p'_r - c'_r) - (p' - c')).
+    Seen from the centre of mass, since that is where a foot must come down to catch the body.
+
+    Attributes:
+        weight: Per (m/s^2)^2, shared by a foot's soles.
+        stiffness: k, 1/s^2.
+        damping: d, 1/s.
+    """
+
+    name: ClassVar[str] = "swing foot"
+    weight: float = 0.5
+    stiffness: float = 100.0
+    damping: float = 20.0
+
+    def rows(self, instant: Instant, goal: Goal) -> Rows:
+        away = instant.resting
+        jacobian = instant.jacobians[away].reshape(-1, instant.nv)
+        matrix = np.zeros((len(jacobian), instant.size))
+        matrix[:, : instant.nv] = jacobian
+        place = (goal.points[away] - goal.com) - (instant.points[away] - instant.com)
+        velocity = instant.jacobians[away] @ instant.qvel
+        rate = goal.point_velocity[away] - goal.com_velocity - velocity + instant.com_velocity
+        target = goal.point_acceleration[away] - instant.drifts[away]
+        target = target + self.stiffness * place + self.damping * rate
+        return Rows(matrix, target.ravel(), np.full(len(jacobian), self.weight / 6.0))
+
+
+def _nothing(instant: Instant) -> Rows:
+    return Rows(np.zeros((0, instant.size)), np.zeros(0), np.zeros(0))
+
+
+def _rotation_vector(rotation: Array) -> Array:
+    """Axis times angle of a rotation matrix, (3,), rad, for angles below a half turn."""
+    skew = 0.5 * np.array(
+        [
+            rotation[2, 1] - rotation[1, 2],
+            rotation[0, 2] - rotation[2, 0],
+            rotation[1, 0] - rotation[0, 1],
+        ]
+    )
+    sine = float(np.linalg.norm(skew))
+    cosine = 0.5 * (rotation[0, 0] + rotation[1, 1] + rotation[2, 2] - 1.0)
+    return skew if sine < 1e-9 else skew * (np.arctan2(sine, cosine) / sine)
