@@ -20,7 +20,10 @@ import mink
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import distance_transform_edt
 
+from enpointe.models.soles import sole_points
+from enpointe.motion.averaging import averaged_qpos
 from enpointe.motion.contact_schedule import ContactSchedule, contact_schedule
 from enpointe.motion.motion import Motion
 from enpointe.motion.weight_plan import WeightPlan, plan_weight
@@ -36,11 +39,19 @@ _STEPS = 2
 """Steps a sample: neighbours are so near that two close the error."""
 _GROUND = 0.03
 """m: at this height above the floor a sole holds to its place in the world half as much."""
-_SOLE, _WEIGHT, _HEIGHT, _TRUNK, _PELVIS = 40.0, 10.0, 0.5, 1.0, 0.6
+_SOLE, _WEIGHT, _HEIGHT, _TRUNK, _PELVIS = 40.0, 10.0, 1.5, 1.0, 0.6
 """Costs of places (1/m) and directions (1/rad)."""
 _POSTURE, _BEARING_LEG = 0.3, 0.05
 """Costs of joint angles (1/rad): of what moves freely, and of a leg that stands, whose hip and
 ankle must give way for the weight to move."""
+_BRUSH, _LIFTING = 0.004, 0.08
+"""m and s: a foot that slides without weight is carried so high over the floor, and takes so long
+to get there; a sole that drags is pushed off its way by friction that nobody planned."""
+_MUSCLE = 0.12
+"""s: the corners at key poses are rounded over this window, which raising a force takes (see
+`enpointe.motion.interpolation.ROUNDING`); the feet that it moves are put back."""
+_KINK = 0.024
+"""s: what is left of kinks where soles come and go."""
 _STRAIGHT = 0.3
 """rad: a standing knee bent this much gives way too; one that is straight stays straight."""
 
@@ -70,8 +81,12 @@ def make_danceable(
         progress: Called with (done, all) now and then.
     """
     contacts = contact_schedule(motion)
-    weight = plan_weight(motion, contacts)
-    qpos = _Poser(motion, contacts, weight).pose_all(progress)
+    rate = 1.0 / float(np.median(np.diff(motion.time)))
+    soft = Motion.from_qpos(
+        motion.model, motion.time, averaged_qpos(motion.qpos, _MUSCLE, rate), name=motion.name
+    )
+    weight = plan_weight(soft, contacts)
+    qpos = averaged_qpos(_Poser(soft, contacts, weight).pose_all(progress), _KINK, rate)
     moved = Motion.from_qpos(
         motion.model, motion.time, qpos, events=motion.events, name=motion.name
     )
@@ -98,6 +113,7 @@ class _Poser:
         self._tasks = [*self._soles, self._com, self._trunk, self._pelvis, self._posture]
         self._limits = [mink.ConfigurationLimit(model, gain=1.0)]
         self._legs = _legs(model, contacts.soles)
+        self._freedom = _freedom(contacts)
 
     def pose_all(self, progress: Callable[[int, int], None] | None) -> Array:
         model, motion = self._motion.model, self._motion
@@ -126,10 +142,14 @@ class _Poser:
         model, data = self._motion.model, self._data
         data.qpos[:] = self._motion.qpos[i]
         mujoco.mj_kinematics(model, data)
-        heights = self._contacts.points[i, :, 2]
-        for task, geom, height in zip(self._soles, self._contacts.soles, heights, strict=True):
-            task.set_position_cost(_SOLE / (1.0 + (max(height, 0.0) / _GROUND) ** 2))
-            task.set_target(mink.SE3.from_translation(data.geom_xpos[geom]))
+        radii = model.geom_size[self._contacts.soles, 0]
+        moving = sole_points(model, data, self._contacts.soles)
+        free = self._freedom[i][:, None]
+        points = free * moving + (1.0 - free) * self._contacts.points[i]
+        points[:, 2] = np.maximum(points[:, 2], _BRUSH * free[:, 0])
+        for task, point, radius in zip(self._soles, points, radii, strict=True):
+            task.set_position_cost(_SOLE / (1.0 + (point[2] / _GROUND) ** 2))
+            task.set_target(mink.SE3.from_translation(point + np.array([0.0, 0.0, radius])))
         self._com.set_target(self._weight.at(float(self._motion.time[i]))[0])
         for task, body in ((self._trunk, "torso"), (self._pelvis, "pelvis")):
             task.set_target(mink.SE3.from_rotation(mink.SO3(data.body(body).xquat)))
@@ -146,6 +166,17 @@ class _Poser:
                 bend = self._motion.qpos[i, model.jnt_qposadr[model.dof_jntid[leg.knee]]]
                 cost[leg.knee] += _POSTURE * np.exp(-((bend / _STRAIGHT) ** 2))
         return cost
+
+
+def _freedom(contacts: ContactSchedule) -> Array:
+    """How free of the floor each sole is, (T, S): 0 while it bears, 1 from `_LIFTING` away."""
+    rate = 1.0 / float(np.median(np.diff(contacts.time)))
+    away = [
+        distance_transform_edt(~bears) if bears.any() else np.full(len(bears), np.inf)
+        for bears in contacts.bears.T
+    ]
+    share = np.clip(np.stack(away, axis=1) / (rate * _LIFTING), 0.0, 1.0)
+    return np.asarray(share**2 * (3.0 - 2.0 * share))
 
 
 @dataclass(frozen=True)

@@ -9,14 +9,13 @@ from itertools import pairwise
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import convolve1d
-from scipy.signal.windows import parzen
 
 from enpointe.errors import MotionError
 from enpointe.models.keypose import KeyPose, KeyPoseSolver
 from enpointe.models.stances import StanceTracker
 from enpointe.models.style import Style
 from enpointe.models.target import pose_target
+from enpointe.motion.averaging import averaged_qpos
 from enpointe.motion.effort import Effort, logistic
 from enpointe.motion.inbetween import Passage, solve_passage
 from enpointe.motion.kind import Interpolation
@@ -214,15 +213,9 @@ def _round_corners(model: mujoco.MjModel, qpos: Array) -> Array:
         width = 7 if name == "root" else 1
         start = int(model.jnt_qposadr[j])
         legs[start : start + width] = any(part in name for part in _LEG_JOINTS)
-    smooth = _averaged(qpos, ROUNDING)
-    smooth[:, legs] = _averaged(qpos[:, legs], LEG_ROUNDING)
-    smooth[:, 3:7] /= np.linalg.norm(smooth[:, 3:7], axis=1, keepdims=True)
+    smooth = averaged_qpos(qpos, ROUNDING, RATE)
+    smooth[:, legs] = averaged_qpos(qpos, LEG_ROUNDING, RATE)[:, legs]
     return smooth
 
 
 _LEG_JOINTS = ("root", "hip", "knee", "ankle", "toe")
-
-
-def _averaged(values: Array, width: float) -> Array:
-    window = parzen(2 * int(width * RATE / 2) + 1, sym=True)
-    return np.asarray(convolve1d(values, window / window.sum(), axis=0, mode="nearest"))

@@ -12,7 +12,9 @@ near the one asked whose p stays inside the planned support, a convex quadratic 
     min  w_c |c - c_asked|^2 + w_u |c'''|^2 + w_s sum s + w_p |p - middle|^2
     s.t. A_k p_k <= b_k - margin + s_k,  s_k >= 0,  c'' = 0 in the air.
 
-A plan that cannot be has s > 0 there: how far outside the feet the floor would have to push.
+A plan that cannot be has s > 0 there: how far outside the feet the floor would have to push. The
+height is planned before, the same way: the smoothest near and not above the one asked, since
+straight legs are no longer than they are, that never falls faster than `_DROP`.
 """
 
 from __future__ import annotations
@@ -40,6 +42,12 @@ MARGIN = 0.015
 """How far inside the support the zero-moment point stays, m, where the support is broad enough."""
 _NEAR, _SMOOTH, _MIDDLE, _OUTSIDE = 30.0, 2e-5, 1.0, 300.0
 """Weights: near what is asked (1/m^2), smooth (s^6/m^2), in the middle (1/m^2), outside (1/m)."""
+_HEIGHT = 2000.0
+"""Weight of the height asked, 1/m^2: bent knees show more than a hip that moves aside."""
+_TALLER = 0.002
+"""m above the height asked."""
+_DROP = 0.5
+"""Share of gravity that the weight falls by at most: feet that carry nothing can't steer."""
 _MOMENTUM_SIGMA = 0.03
 """s: differences of differences of sampled poses need some averaging; muscles do as much."""
 
@@ -92,20 +100,18 @@ def plan_weight(motion: Motion, contacts: ContactSchedule) -> WeightPlan:
     time = np.arange(motion.time[0], motion.time[-1] + 0.5 / PLAN_RATE, 1.0 / PLAN_RATE)
     com, momentum = _centroidal(motion, time)
     sigma = _MOMENTUM_SIGMA * PLAN_RATE
-    height = gaussian_filter1d(com[:, 2], 2 * sigma)
-    rise = np.gradient(np.gradient(height, time), time)
     twist = np.gradient(gaussian_filter1d(momentum, sigma, axis=0), time, axis=0)
     gravity = float(-motion.model.opt.gravity[2])
-    load = np.maximum(rise + gravity, 0.2 * gravity)
-    arm = height / load
-    mass = float(motion.model.body_mass.sum())
-    offset = np.stack([-twist[:, 1], twist[:, 0]], axis=1) / (mass * load)[:, None]
     hulls = [
         support_hull(contacts.points[i, contacts.bears[i], :2])
         for i in (contacts.index(float(t)) for t in time)
     ]
-    place, velocity, acceleration, zmp, outside = _solve(com[:, :2], arm, offset, hulls)
-    lift = np.stack([height, np.gradient(height, time), rise])
+    lift = _plan_height(com[:, 2], np.array([len(hull) > 0 for hull in hulls]), gravity)
+    load = np.maximum(lift[2] + gravity, 0.2 * gravity)
+    arm = lift[0] / load
+    mass = float(motion.model.body_mass.sum())
+    offset = np.stack([-twist[:, 1], twist[:, 0]], axis=1) / (mass * load)[:, None]
+    place, velocity, acceleration, zmp, outside = _plan_level(com[:, :2], arm, offset, hulls)
     return WeightPlan(
         time,
         np.column_stack([place, lift[0]]),
@@ -132,70 +138,128 @@ def _centroidal(motion: Motion, time: Array) -> tuple[Array, Array]:
     return com, momentum
 
 
-def _solve(
+def _plan_height(asked: Array, standing: NDArray[np.bool_], gravity: float) -> Array:
+    """Height, its velocity and acceleration, (3, K)."""
+    plan = _Chain(1, len(asked))
+    plan.rest_at_ends()
+    plan.add(plan.acceleration.T, -_DROP * gravity, np.inf, where=standing)
+    plan.add(plan.acceleration.T + gravity, 0, 0, where=~standing)
+    plan.add(plan.place.T - ca.DM(asked), -np.inf, _TALLER, where=standing)
+    cost = _HEIGHT * ca.sumsqr(plan.place.T - ca.DM(asked)) + _SMOOTH * ca.sumsqr(plan.jerk)
+    (place, velocity, acceleration) = plan.minimise(
+        cost, [plan.place, plan.velocity, plan.acceleration], asked[:, None]
+    )
+    return np.stack([place, velocity, acceleration])
+
+
+def _plan_level(
     asked: Array, arm: Array, offset: Array, hulls: list[Array]
 ) -> tuple[Array, Array, Array, Array, Array]:
-    count, dt = len(asked), 1.0 / PLAN_RATE
-    c, v, a = (ca.MX.sym(name, 2, count) for name in "cva")
-    u = ca.MX.sym("u", 2, count - 1)
-    s = ca.MX.sym("s", count)
-    rows: list[ca.MX] = []
-    bounds: list[tuple[float, float]] = []
-
-    def add(expression: ca.MX, low: float, high: float) -> None:
-        rows.append(ca.vec(expression))
-        bounds.extend([(low, high)] * expression.numel())
-
-    now, then = slice(0, count - 1), slice(1, count)
-    add(c[:, then] - c[:, now] - dt * v[:, now] - dt**2 / 2 * a[:, now] - dt**3 / 6 * u, 0, 0)
-    add(v[:, then] - v[:, now] - dt * a[:, now] - dt**2 / 2 * u, 0, 0)
-    add(a[:, then] - a[:, now] - dt * u, 0, 0)
-    for still in (v[:, 0], a[:, 0], v[:, -1], a[:, -1]):
-        add(still, 0, 0)
-    zmp = c - a * ca.DM(np.tile(arm, (2, 1))) + ca.DM(offset.T)
+    """Place, velocity, acceleration and zero-moment point (K, 2), and how far outside (K,)."""
+    plan = _Chain(2, len(asked))
+    plan.rest_at_ends()
+    outside = ca.MX.sym("outside", len(asked))
+    zmp = plan.place - plan.acceleration * ca.DM(np.tile(arm, (2, 1))) + ca.DM(offset.T)
     middle = np.array(asked)
-    standing = np.zeros(count)
+    standing = np.zeros(len(asked))
     for k, hull in enumerate(hulls):
         if len(hull) == 0:
-            add(a[:, k], 0, 0)
+            plan.add(plan.acceleration[:, k], 0, 0)
             continue
         standing[k] = 1.0
         middle[k] = centroid(hull) if len(hull) > 2 else hull.mean(axis=0)
         normals, offsets = _shrunk(hull)
-        add(ca.DM(normals) @ zmp[:, k] - s[k] - ca.DM(offsets), -ca.inf, 0)
+        plan.add(ca.DM(normals) @ zmp[:, k] - outside[k] - ca.DM(offsets), -np.inf, 0)
     weight = ca.DM(np.tile(standing, (2, 1)))
     cost = (
-        _NEAR * ca.sumsqr(c - ca.DM(asked.T))
-        + _SMOOTH * ca.sumsqr(u)
-        + _OUTSIDE * ca.sum1(s)
+        _NEAR * ca.sumsqr(plan.place - ca.DM(asked.T))
+        + _SMOOTH * ca.sumsqr(plan.jerk)
+        + _OUTSIDE * ca.sum1(outside)
         + _MIDDLE * ca.sumsqr(weight * (zmp - ca.DM(middle.T)))
     )
-    unknowns = ca.veccat(c, v, a, u, s)
-    start = ca.veccat(
-        ca.DM(asked.T), ca.DM(4 * count, 1), ca.DM(2 * (count - 1), 1), ca.DM(count, 1)
-    )
-    free = 6 * count + 2 * (count - 1)
-    lower = np.concatenate([np.full(free, -np.inf), np.zeros(count)])
-    solver = ca.nlpsol(
-        "weight",
-        "ipopt",
-        {"x": unknowns, "f": cost, "g": ca.vertcat(*rows)},
-        {
-            "ipopt": {
-                "print_level": 0,
-                "sb": "yes",
-                "mehrotra_algorithm": "yes",
-                "hessian_constant": "yes",
-                "jac_c_constant": "yes",
-                "jac_d_constant": "yes",
-            },
-            "print_time": False,
-        },
-    )
-    low, high = np.array(bounds).T
-    found = solver(x0=start, lbx=lower, ubx=np.inf, lbg=low, ubg=high)["x"]
-    read = ca.Function("read", [unknowns], [c.T, v.T, a.T, zmp.T, s])
-    return tuple(np.array(part).squeeze() for part in read(found))  # type: ignore[return-value]
+    wanted = [plan.place, plan.velocity, plan.acceleration, zmp, outside.T]
+    return tuple(plan.minimise(cost, wanted, asked, outside))  # type: ignore[return-value]
+
+
+class _Chain:
+    """A place of some axes over K knots, driven by its jerk, constant from knot to knot."""
+
+    def __init__(self, axes: int, count: int) -> None:
+        self.place, self.velocity, self.acceleration = (
+            ca.MX.sym(name, axes, count) for name in ("place", "velocity", "acceleration")
+        )
+        self.jerk = ca.MX.sym("jerk", axes, count - 1)
+        self._rows: list[ca.MX] = []
+        self._low: list[Array] = []
+        self._high: list[Array] = []
+        dt = 1.0 / PLAN_RATE
+        c, v, a, u = self.place, self.velocity, self.acceleration, self.jerk
+        now, then = slice(0, count - 1), slice(1, count)
+        self.add(c[:, then] - c[:, now] - dt * v[:, now] - dt**2 / 2 * a[:, now] - dt**3 / 6 * u)
+        self.add(v[:, then] - v[:, now] - dt * a[:, now] - dt**2 / 2 * u)
+        self.add(a[:, then] - a[:, now] - dt * u)
+
+    def add(
+        self,
+        expression: ca.MX,
+        low: float = 0.0,
+        high: float = 0.0,
+        where: NDArray[np.bool_] | None = None,
+    ) -> None:
+        """Keep an expression, or those of its rows, between two bounds."""
+        rows = ca.vec(expression)
+        if where is not None:
+            rows = rows[np.flatnonzero(where).tolist()]
+        self._rows.append(rows)
+        self._low.append(np.full(rows.numel(), low))
+        self._high.append(np.full(rows.numel(), high))
+
+    def rest_at_ends(self) -> None:
+        """Begin and end still."""
+        for k in (0, -1):
+            self.add(self.velocity[:, k])
+            self.add(self.acceleration[:, k])
+
+    def minimise(
+        self,
+        cost: ca.MX,
+        wanted: list[ca.MX],
+        start: Array,
+        slack: ca.MX | None = None,
+    ) -> list[Array]:
+        """The wanted expressions at the minimum, knots first; `slack` is not negative."""
+        chain = ca.veccat(self.place, self.velocity, self.acceleration, self.jerk)
+        unknowns = chain if slack is None else ca.veccat(chain, slack)
+        lower = np.full(unknowns.numel(), -np.inf)
+        lower[chain.numel() :] = 0.0
+        solver = ca.nlpsol(
+            "weight", "ipopt", {"x": unknowns, "f": cost, "g": ca.vertcat(*self._rows)}, _QUADRATIC
+        )
+        guess = np.zeros(unknowns.numel())
+        guess[: start.size] = start.ravel()
+        found = solver(
+            x0=guess,
+            lbx=lower,
+            ubx=np.inf,
+            lbg=np.concatenate(self._low),
+            ubg=np.concatenate(self._high),
+        )["x"]
+        read = ca.Function("read", [unknowns], [each.T for each in wanted])
+        return [np.array(part).squeeze() for part in read.call([found])]
+
+
+_QUADRATIC = {
+    "ipopt": {
+        "print_level": 0,
+        "sb": "yes",
+        "mehrotra_algorithm": "yes",
+        "hessian_constant": "yes",
+        "jac_c_constant": "yes",
+        "jac_d_constant": "yes",
+    },
+    "print_time": False,
+}
+"""IPOPT told that the problem is a convex quadratic one, which it solves in some dozen steps."""
 
 
 def _shrunk(hull: Array) -> tuple[Array, Array]:
