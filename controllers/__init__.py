@@ -9,3 +9,4 @@ from enpointe.controllers.protocol import Command as Command
 from enpointe.controllers.protocol import Controller as Controller
 from enpointe.controllers.protocol import State as State
 from enpointe.controllers.recording import Recording as Recording
+from enpointe.controllers.wholebody import WholeBody as WholeBody

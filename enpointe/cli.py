@@ -34,6 +34,7 @@ app = typer.Typer(
 class ControllerName(StrEnum):
     KINEMATIC = "kinematic"
     PD = "pd"
+    WHOLEBODY = "wholebody"
 
 
 class BodyName(StrEnum):
@@ -75,8 +76,19 @@ def perform(
     effort: Effort = None,
     tempo: Tempo = None,
     controller: Annotated[
-        ControllerName, typer.Option(help="pd dances under gravity; kinematic only moves.")
+        ControllerName,
+        typer.Option(
+            help="pd dances under gravity on two feet; wholebody balances on one as well; kinematic"
+            " only moves."
+        ),
     ] = ControllerName.PD,
+    hold: Annotated[
+        float | None,
+        typer.Option(
+            help="Hold the last pose for so many seconds; INPUT may then be a single pose, named as"
+            " for `enpointe pose`."
+        ),
+    ] = None,
     body: Annotated[BodyName, typer.Option(help="Who dances.")] = BodyName.DANCER,
     height: Height = 1.68,
     mass: Mass = 54.0,
@@ -89,14 +101,17 @@ def perform(
     seed: Seed = 0,
 ) -> int:
     """Dance a score under gravity, and write a report of it."""
+    from enpointe.posing import find_score
+
     console = Console(json=json, quiet=quiet)
     with console.progress() as progress:
-        score = enpointe.load_score(source)
+        score = enpointe.load_score(source) if hold is None else find_score(source)
         dance = enpointe.perform(
             score,
             effort=effort,
             tempo=tempo,
             controller=controller.value,
+            hold=hold,
             style=_style(turnout),
             dancer=_dancer(height, mass, sex),
             progress=progress,

@@ -22,7 +22,7 @@ __all__ = ["CONTROLLERS", "Performance", "Progress", "dance", "perform", "prepar
 
 Progress = Callable[[str, float, float], None]
 """Called with what is being done, how much of it is done, and how much there is."""
-CONTROLLERS = ("kinematic", "pd")
+CONTROLLERS = ("kinematic", "pd", "wholebody")
 
 
 def silent(task: str, done: float, total: float) -> None:
@@ -38,12 +38,14 @@ class Performance:
         effort: Quality that was asked.
         effort_name: Preset or numbers.
         interpolation: How the key poses were joined.
-        controller: "kinematic" or "pd".
+        controller: One of `CONTROLLERS`.
         motion: The reference: what was to be danced.
         recording: What happened; None for a kinematic performance.
         measures: Figures of the recording; None for a kinematic performance.
         shortfall: Most that the floor could not give of the force and moment that the movement
             asks of it, N (moments over 1 m); None for a kinematic performance.
+        qp_failures: Periods for which the whole-body controller found no solution and fell back;
+            None for other controllers.
     """
 
     choreography: Choreography
@@ -55,6 +57,7 @@ class Performance:
     recording: Recording | None
     measures: Measures | None
     shortfall: float | None = None
+    qp_failures: int | None = None
 
     @property
     def score(self) -> Score:
@@ -91,7 +94,11 @@ class Performance:
         return fit_logistic(wrist_profiles(self.danced))
 
     def save(self, folder: Path) -> dict[str, Path]:
-        """Write `motion.npz` and, of a physical performance, `recording.npz`; returns paths."""
+        """Write `motion.npz` and, of a physical performance, `recording.npz` and `balance.csv`.
+
+        Returns:
+            The paths by name.
+        """
         from enpointe.motion.npz import save_motion
 
         files = {"motion": folder / "motion.npz"}
@@ -99,6 +106,10 @@ class Performance:
         if self.recording is not None:
             files["recording"] = folder / "recording.npz"
             self.recording.save(files["recording"])
+            from enpointe.sim.balance_table import balance_table
+
+            files["balance"] = folder / "balance.csv"
+            balance_table(self.recording).save(files["balance"])
         return files
 
     def summary(self) -> dict[str, object]:
@@ -129,6 +140,8 @@ class Performance:
                 "lateness_max": lateness if isfinite(lateness) else None,
             }
             figures |= _physical_figures(self.recording, self.measures, self.shortfall)
+        if self.qp_failures is not None:
+            figures["qp_failures"] = self.qp_failures
         return figures
 
 
@@ -175,6 +188,7 @@ def prepare(
     tempo: float | None = None,
     style: Style | None = None,
     dancer: Anthropometry | None = None,
+    still: bool = False,
     progress: Progress = silent,
 ) -> Choreography:
     """Read a score and solve its key poses.
@@ -184,6 +198,7 @@ def prepare(
         tempo: Pulses a minute; the score's own if None.
         style: The method's amounts.
         dancer: Height, mass and sex; a dancer of 1.68 m and 54 kg if None.
+        still: Take a score of one frame, which is a pose to hold.
         progress: Told how far it is.
 
     Raises:
@@ -201,6 +216,7 @@ def prepare(
         KeyPoseSolver(dancer_model(dancer)),
         style=style,
         tempo=tempo,
+        still=still,
         progress=lambda done, total: progress("key poses", done, total),
     )
 
@@ -212,6 +228,7 @@ def perform(
     tempo: float | None = None,
     controller: str = "pd",
     interpolation: str = "expressive",
+    hold: float | None = None,
     style: Style | None = None,
     dancer: Anthropometry | None = None,
     progress: Progress = silent,
@@ -223,8 +240,10 @@ def perform(
         effort: A preset's name, which brings its tempo, or "time=-3.5,weight=.41,space=1";
             natural, at the score's own tempo, if None.
         tempo: Pulses a minute; the preset's or the score's if None.
-        controller: "pd", or "kinematic" for the movement without physics.
+        controller: "pd", which stands on two feet; "wholebody", which balances on one as well; or
+            "kinematic" for the movement without physics.
         interpolation: "expressive", "logistic" or "slerp".
+        hold: Seconds that the last pose is held; with it a score of one frame is a pose to hold.
         style: The method's amounts.
         dancer: Height, mass and sex; a dancer of 1.68 m and 54 kg if None.
         progress: Told how far it is.
@@ -247,6 +266,8 @@ def perform(
 
     if controller not in CONTROLLERS:
         raise EnpointeError(f"no controller {controller!r}; use {' or '.join(CONTROLLERS)}")
+    if hold is not None and not (isfinite(hold) and 0.0 < hold <= LONGEST_HOLD):
+        raise EnpointeError(f"a pose is held for up to {LONGEST_HOLD:g} s, not for {hold:g}")
     quality, preset_tempo, effort_name = find_effort(effort)
     kind = Interpolation.named(interpolation)
     choreography = prepare(
@@ -254,9 +275,13 @@ def perform(
         tempo=tempo if tempo is not None else preset_tempo,
         style=style,
         dancer=dancer,
+        still=hold is not None,
         progress=progress,
     )
-    return dance(choreography, quality, effort_name, kind, controller, progress=progress)
+    return dance(choreography, quality, effort_name, kind, controller, hold=hold, progress=progress)
+
+
+LONGEST_HOLD = 600.0
 
 
 def dance(
@@ -266,6 +291,7 @@ def dance(
     interpolation: Interpolation,
     controller: str,
     *,
+    hold: float | None = None,
     progress: Progress = silent,
 ) -> Performance:
     """Move and, unless kinematic, physically perform a solved score; see `perform`."""
@@ -275,24 +301,26 @@ def dance(
         choreography,
         effort,
         interpolation,
+        hold=hold,
         progress=lambda done, total: progress("movement", done, total),
     )
-    recording = measures = shortfall = None
-    if controller == "pd":
-        from enpointe.controllers import PD
-        from enpointe.controllers import perform as run
-        from enpointe.sim.body import SimulatedBody
-        from enpointe.sim.measures import measure
-
-        pd = PD(motion)
-        shortfall = float(pd.feedforward.shortfall.max())
-        recording = run(
-            motion,
-            pd,
-            SimulatedBody.at_start_of(motion),
-            progress=lambda done, total: progress("dance", done, total),
+    if controller == "kinematic":
+        return Performance(
+            choreography, effort, effort_name, interpolation, controller, motion, None, None
         )
-        measures = measure(recording)
+    from enpointe.controllers import PD, FeedForward, WholeBody
+    from enpointe.controllers import perform as run
+    from enpointe.sim.body import SimulatedBody
+    from enpointe.sim.measures import measure
+
+    planned = FeedForward.along(motion)
+    driver = WholeBody(motion) if controller == "wholebody" else PD(motion, feedforward=planned)
+    recording = run(
+        motion,
+        driver,
+        SimulatedBody.at_start_of(motion),
+        progress=lambda done, total: progress("dance", done, total),
+    )
     return Performance(
         choreography,
         effort,
@@ -301,6 +329,7 @@ def dance(
         controller,
         motion,
         recording,
-        measures,
-        shortfall,
+        measure(recording),
+        float(planned.shortfall.max()),
+        driver.workload.failures if isinstance(driver, WholeBody) else None,
     )

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from enpointe.models import Anthropometry, KeyPose, Style
 
-__all__ = ["Poses", "pose", "vocabulary_score"]
+__all__ = ["Poses", "find_score", "pose", "vocabulary_score"]
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ def pose(
         ScoreError: The score can't be read or reached.
         EnpointeError: No such name.
     """
-    score = source if isinstance(source, Score) else _find(source)
+    score = source if isinstance(source, Score) else find_score(source)
     check_reach(score, dancer, style)
     from enpointe.models import KeyPoseSolver, dancer_model, pose_target
 
@@ -132,7 +132,8 @@ _OPPOSITE = {"devant": "derrière", "derrière": "devant"}
 _ON_THE_LEFT = "left foot: 0 wide, 1 high, level"
 
 
-def _find(source: str | Path) -> Score:
+def find_score(source: str | Path) -> Score:
+    """The score of a position's name, a shipped score's, or a `.bmn` file."""
     text = str(source).strip()
     score = vocabulary_score(text.lower())
     if score is not None:

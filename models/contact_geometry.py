@@ -11,7 +11,15 @@ import mujoco
 
 from enpointe.models.anatomy import NECK_RISE, SIDES, Skeleton, side_sign
 
-__all__ = ["FLOOR", "SOLE_CLASS", "add_floor", "add_limb_contacts", "add_soles"]
+__all__ = [
+    "FLOOR",
+    "PLATFORM",
+    "PLATFORM_RISE",
+    "SOLE_CLASS",
+    "add_floor",
+    "add_limb_contacts",
+    "add_soles",
+]
 
 FLOOR = "floor"
 SOLE_CLASS = 2
@@ -78,28 +86,45 @@ def add_floor(spec: mujoco.MjSpec) -> None:
 
 
 def add_soles(spec: mujoco.MjSpec, skeleton: Skeleton) -> None:
-    """Six spheres a foot: heel, ball and tip of the toes, an inner and an outer one of each.
+    """What stands on the floor: heel, ball, tip of the toes, and the platform of a pointe shoe.
 
-    The ball's lie on the axis of the toe joint, so that one set serves the flat foot and
-    demi-pointe.
+    Of each a left and a right sphere, of the platform four. The ball's lie on the axis of the toe
+    joint, so that one set serves the flat foot and demi-pointe, and belong to the toes, which stay
+    where they are while the foot rises over them.
     """
     half = skeleton.ball_half_breadth - _SOLE_RADIUS
     lift = _SOLE_RADIUS - skeleton.ankle_height
+    long, broad = PLATFORM
     for side in SIDES:
         foot, toe = spec.body(f"{side}_foot"), spec.body(f"{side}_toe")
         for edge, s in (("inner", -side_sign(side)), ("outer", side_sign(side))):
             heel = [-skeleton.heel_back + _SOLE_RADIUS, s * 0.55 * half, lift]
             _add_sole(foot, f"{side}_heel_{edge}", heel)
-            _add_sole(foot, f"{side}_ball_{edge}", [skeleton.ball_forward, s * half, lift])
+            _add_sole(toe, f"{side}_ball_{edge}", [0, s * half, 0])
             tip = [skeleton.toe_length - _SOLE_RADIUS, s * 0.5 * half, 0]
             _add_sole(toe, f"{side}_tip_{edge}", tip)
+            end = skeleton.toe_length - _PLATFORM_RADIUS
+            for part, rise in (("under", 0.0), ("upper", long)):
+                height = PLATFORM_RISE - 0.5 * long - _SOLE_RADIUS + rise
+                place = [end, s * 0.5 * broad, height]
+                _add_sole(toe, f"{side}_platform_{part}_{edge}", place, _PLATFORM_RADIUS)
 
 
-def _add_sole(body: mujoco.MjsBody, name: str, pos: list[float]) -> None:
+PLATFORM = (0.03, 0.04)
+"""Length and breadth of a pointe shoe's platform, m: 12 cm^2, ours, of a square box. Makers sell
+narrow and broad ones; no measured area was found."""
+PLATFORM_RISE = 0.025
+"""Its middle above the sole, m: its lower edge is 7 mm off the floor when the foot is flat."""
+_PLATFORM_RADIUS = 0.003
+
+
+def _add_sole(
+    body: mujoco.MjsBody, name: str, pos: list[float], radius: float = _SOLE_RADIUS
+) -> None:
     body.add_geom(
         name=name,
         type=mujoco.mjtGeom.mjGEOM_SPHERE,
-        size=[_SOLE_RADIUS, 0, 0],
+        size=[radius, 0, 0],
         pos=pos,
         contype=SOLE_CLASS,
         conaffinity=_FLOOR_CLASS,

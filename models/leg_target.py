@@ -8,6 +8,7 @@ from math import radians
 import numpy as np
 from numpy.typing import NDArray
 
+from enpointe.models.contact_geometry import PLATFORM, PLATFORM_RISE
 from enpointe.models.extremities import extremity
 from enpointe.models.figure import Figure
 from enpointe.models.foot_positions import Footprint
@@ -67,19 +68,15 @@ class OnPointe:
 
     def soles(self, figure: Figure) -> NDArray[np.float64]:
         """Corners of the platform, `PLATFORM` m, (4, 2)."""
-        tip = figure.ball_forward + figure.toe_length
+        middle = figure.ball_forward + figure.toe_length + PLATFORM_RISE
         long, broad = PLATFORM
         return np.array(
             [
-                self.footprint.point(tip + sx * long / 2, sy * broad / 2)
+                self.footprint.point(middle + sx * long / 2, sy * broad / 2)
                 for sx in (-1.0, 1.0)
                 for sy in (-1.0, 1.0)
             ]
         )
-
-
-PLATFORM = (0.03, 0.04)
-"""Length and breadth of a pointe shoe's platform, m (3 x 4 cm)."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -151,7 +151,11 @@ def _leg_tasks(model: mujoco.MjModel, target: PoseTarget, side: Side) -> list[mi
         return [toe]
     if isinstance(leg, OnPointe):
         tip = leg.footprint.point(figure.ball_forward + figure.toe_length)
-        return [_world_task(f"{side}_toe_tip", np.array([*tip, 0.0]), 10.0)]
+        # Turned out as well as upright: on its tip alone the leg may arrive twisted about itself.
+        down = mink.SO3.from_z_radians(leg.footprint.direction) @ mink.SO3.from_y_radians(np.pi / 2)
+        toe = mink.FrameTask(f"{side}_toe_tip", "site", position_cost=10.0, orientation_cost=1.0)
+        toe.set_target(mink.SE3.from_rotation_and_translation(down, np.array([*tip, 0.0])))
+        return [toe]
     if isinstance(leg, InAir):
         tasks: list[mink.Task] = [_point_task(f"{side}_ankle", "pelvis", leg.ankle, 10.0)]
         if leg.knee is not None:
@@ -183,12 +187,6 @@ def _weight(target: PoseTarget) -> NDArray[np.float64]:
         return target.com
     centre = centroid(target.support) if target.weight is None else target.weight
     return np.array([*centre, 0.9])
-
-
-def _world_task(site: str, place: NDArray[np.float64], cost: float) -> mink.FrameTask:
-    task = mink.FrameTask(site, "site", position_cost=cost, orientation_cost=0.0)
-    task.set_target(mink.SE3.from_translation(place))
-    return task
 
 
 def _point_task(

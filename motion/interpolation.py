@@ -86,6 +86,7 @@ def solve_key_poses(
     *,
     style: Style | None = None,
     tempo: float | None = None,
+    still: bool = False,
     progress: Progress | None = None,
 ) -> Choreography:
     """Solve every frame of a score.
@@ -95,6 +96,7 @@ def solve_key_poses(
         solver: Of the dancer.
         style: The method's amounts.
         tempo: Pulses a minute; the score's own if None.
+        still: Take a score of one frame, which is a pose to hold.
         progress: Called with (done, all).
 
     Raises:
@@ -105,7 +107,7 @@ def solve_key_poses(
     danced = score.performed()
     danced.duration(tempo)
     frames = danced.resolved()
-    if len(frames) < 2:
+    if len(frames) < 2 and not still:
         raise MotionError(f"{score.title!r} has one frame; a motion needs two at least")
     tracker = StanceTracker(solver.figure, (style or Style()).turnout_deg)
     targets = [
@@ -121,6 +123,7 @@ def interpolate(
     effort: Effort,
     kind: Interpolation = Interpolation.EXPRESSIVE,
     *,
+    hold: float | None = None,
     progress: Progress | None = None,
 ) -> Motion:
     """Fill in the movement between the key poses.
@@ -129,6 +132,7 @@ def interpolate(
         choreography: The solved score.
         effort: Quality of the movement.
         kind: Expressive, or a baseline.
+        hold: Stillness after the last beat, s; `HOLD` if None.
         progress: Called with (done, all).
 
     Returns:
@@ -137,7 +141,7 @@ def interpolate(
     """
     stations = choreography.stations
     times = COUNT_IN + np.array([station.time for station in stations])
-    count = round((times[-1] + HOLD) * RATE) + 1
+    count = round((times[-1] + (HOLD if hold is None else hold)) * RATE) + 1
     time = np.arange(count) / RATE
     model = choreography.solver.model
     qpos = np.empty((count, model.nq))

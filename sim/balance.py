@@ -11,7 +11,18 @@ from numpy.typing import NDArray
 from enpointe.models.foot_positions import support_hull
 from enpointe.models.rules.balance import half_planes
 
-__all__ = ["LOADED", "centre_of_pressure", "margin", "slip", "support"]
+__all__ = [
+    "LOADED",
+    "area",
+    "centre_of_pressure",
+    "extrapolated_com",
+    "margin",
+    "margin_of_stability",
+    "penetration",
+    "slip",
+    "support",
+    "zero_moment_point",
+]
 
 Array = NDArray[np.float64]
 LOADED = 2.0
@@ -62,6 +73,73 @@ def centre_of_pressure(points: Array, forces: Array) -> Array:
     if total <= LOADED:
         return np.full(2, np.nan)
     return np.asarray(vertical @ points[:, :2] / total)
+
+
+def zero_moment_point(
+    com: Array, acceleration: Array, momentum_rate: Array, mass: float, gravity: float
+) -> Array:
+    """Where the floor must push for this movement, (2,), m; NaN where it need not push up.
+
+    From F = m (c'' + g z) and the moment balance (p - c) x F = L' about the level axes, p_z = 0
+    (Vukobratovic and Borovac 2004):
+
+        p_x = c_x - (c_z F_x + L'_y) / F_z,    p_y = c_y - (c_z F_y - L'_x) / F_z.
+
+    On a level floor it is the centre of pressure, found without looking at the floor.
+
+    Args:
+        com: c, (3,), m.
+        acceleration: c'', (3,), m/s^2.
+        momentum_rate: L' about the centre of mass, (3,), N m.
+        mass: m, kg.
+        gravity: g, m/s^2, positive.
+    """
+    force = mass * (acceleration + np.array([0.0, 0.0, gravity]))
+    if force[2] <= LOADED:
+        return np.full(2, np.nan)
+    moment = np.array([momentum_rate[1], -momentum_rate[0]])
+    return np.asarray(com[:2] - (com[2] * force[:2] + moment) / force[2])
+
+
+def extrapolated_com(com: Array, velocity: Array, gravity: float) -> Array:
+    """The extrapolated centre of mass or capture point, (2,), m:  c + c' sqrt(l / g).
+
+    Hof et al. 2005 (J. Biomech. 38:1-8). l is the height of the centre of mass above the floor.
+
+    Args:
+        com: (3,), m.
+        velocity: (3,) or (2,), m/s.
+        gravity: m/s^2, positive.
+    """
+    return np.asarray(com[:2] + velocity[:2] * np.sqrt(max(com[2], 0.0) / gravity))
+
+
+def margin_of_stability(hull: Array, com: Array, velocity: Array, gravity: float) -> float:
+    """Signed distance of the extrapolated centre of mass to the edge of the support, m.
+
+    Hof et al. 2005. Positive inside: a force under these feet can still stop the fall. Minus
+    infinity in the air.
+    """
+    return margin(hull, extrapolated_com(com, velocity, gravity))
+
+
+def area(hull: Array) -> float:
+    """Of a counter-clockwise hull, m^2 (shoelace formula); 0 for a line, a point or nothing."""
+    if len(hull) < 3:
+        return 0.0
+    following = np.roll(hull, -1, axis=0)
+    return float(0.5 * np.sum(hull[:, 0] * following[:, 1] - following[:, 0] * hull[:, 1]))
+
+
+def penetration(depths: Array) -> float:
+    """Deepest that any sole is in the floor, m, positive downwards.
+
+    Contact gives way, as a sprung floor does: a fraction of a millimetre under a standing dancer.
+
+    Args:
+        depths: (S,), each sole's.
+    """
+    return float(depths.max(initial=0.0))
 
 
 def slip(points: Array, forces: Array) -> Array:

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from enpointe.controllers import Recording
-from enpointe.controllers.plant import Plant
-from enpointe.sim import balance
+from enpointe.sim import balance, feet
 
 __all__ = ["Flight", "Measures", "measure"]
 
@@ -115,7 +113,7 @@ def measure(recording: Recording) -> Measures:
         com=com,
         cop=cop,
         margin=margins,
-        foot_force=_foot_forces(recording.model, forces),
+        foot_force=feet.ground_forces(recording.model, forces)[:, :, 2],
         slip=balance.slip(points, forces).max(axis=1),
         error=_joint_error(recording),
         torque_fraction=np.abs(recording.effort) / limit,
@@ -134,12 +132,10 @@ def _capture_margins(recording: Recording, points: Array, forces: Array, com: Ar
     """
     gravity = float(-recording.model.opt.gravity[2])
     velocity = np.gradient(com, recording.time, axis=0) if len(com) > 1 else np.zeros_like(com)
-    height = np.maximum(com[:, 2], 0.0)
-    capture = com[:, :2] + velocity[:, :2] * np.sqrt(height / gravity)[:, None]
     return np.array(
         [
-            balance.margin(balance.support(p, f), x)
-            for p, f, x in zip(points, forces, capture, strict=True)
+            balance.margin_of_stability(balance.support(p, f), c, v, gravity)
+            for p, f, c, v in zip(points, forces, com, velocity, strict=True)
         ]
     )
 
@@ -158,13 +154,6 @@ def _fell_at(recording: Recording, margins: Array, capture: Array) -> float | No
 
 TOPPLING = 0.005
 """How far outside its support the capture point may end before the dancer counts as falling, m."""
-
-
-def _foot_forces(model: mujoco.MjModel, forces: Array) -> Array:
-    """Vertical force by foot, left then right; soles stand in the order of their names' geoms."""
-    names = [model.geom(int(g)).name for g in Plant(model).sole_geoms]
-    left = np.array([name.startswith("left") for name in names])
-    return np.stack([forces[:, left, 2].sum(1), forces[:, ~left, 2].sum(1)], axis=1)
 
 
 def _joint_error(recording: Recording) -> Array:

@@ -35,7 +35,7 @@ from enpointe.controllers.wholebody.tasks import (
 )
 from enpointe.motion import Motion
 
-__all__ = ["DEFAULT_TASKS", "Effort", "WholeBody"]
+__all__ = ["DEFAULT_TASKS", "WholeBody", "Workload"]
 
 Array = NDArray[np.float64]
 PERIOD = 0.002
@@ -58,7 +58,7 @@ TONE_MEMORY = 0.05
 
 
 @dataclass(slots=True)
-class Effort:
+class Workload:
     """What control cost.
 
     Attributes:
@@ -91,7 +91,7 @@ class WholeBody:
         friction: Planned coefficient.
 
     Attributes:
-        effort: What control cost so far.
+        workload: What control cost so far.
         problem: The last programme, to be looked at; None before the first command.
         unknowns: Its solution; None if it has none.
     """
@@ -108,7 +108,7 @@ class WholeBody:
     ) -> None:
         self.motion = motion
         self.tasks = tuple(tasks)
-        self.effort = Effort()
+        self.workload = Workload()
         self.problem: WholeBodyProblem | None = None
         self.unknowns: Array | None = None
         self._observer = Observer(model or motion.model, friction)
@@ -139,7 +139,7 @@ class WholeBody:
 
     def reset(self, state: State) -> None:
         """Begin from `state`: nothing is remembered of a performance before."""
-        self.effort = Effort()
+        self.workload = Workload()
         self.problem = self.unknowns = None
         self._observer.place(state.qpos, state.qvel)
         active = self._schedule.active(0.0, self._observer.clearance())
@@ -156,11 +156,11 @@ class WholeBody:
         built = perf_counter()
         self.unknowns = self.problem.solve()
         solved = perf_counter()
-        self.effort.commands += 1
-        self.effort.building += built - start
-        self.effort.solving += solved - built
+        self.workload.commands += 1
+        self.workload.building += built - start
+        self.workload.solving += solved - built
         if self.unknowns is None:
-            self.effort.failures += 1
+            self.workload.failures += 1
             return self._fall_back(t, state)
         return self._obey(self.problem.instant, self.unknowns)
 
