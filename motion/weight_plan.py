@@ -20,6 +20,7 @@ straight legs are no longer than they are, that never falls faster than `_DROP`.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import casadi as ca
 import mujoco
@@ -232,9 +233,8 @@ class _Chain:
         unknowns = chain if slack is None else ca.veccat(chain, slack)
         lower = np.full(unknowns.numel(), -np.inf)
         lower[chain.numel() :] = 0.0
-        solver = ca.nlpsol(
-            "weight", "ipopt", {"x": unknowns, "f": cost, "g": ca.vertcat(*self._rows)}, _QUADRATIC
-        )
+        problem = {"x": unknowns, "f": cost, "g": ca.vertcat(*self._rows)}
+        solver = ca.nlpsol("weight", "ipopt", problem, _QUADRATIC)
         guess = np.zeros(unknowns.numel())
         guess[: start.size] = start.ravel()
         found = solver(
@@ -248,7 +248,7 @@ class _Chain:
         return [np.array(part).squeeze() for part in read.call([found])]
 
 
-_QUADRATIC = {
+_QUADRATIC: dict[str, Any] = {
     "ipopt": {
         "print_level": 0,
         "sb": "yes",
