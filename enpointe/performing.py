@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from enpointe.errors import EnpointeError
-from enpointe.notation import Score, load_score
+from enpointe.notation import FloorContact, Score, load_score
 
 if TYPE_CHECKING:
     from enpointe.controllers import Recording
@@ -167,6 +167,15 @@ def _physical_figures(
     }
 
 
+def _on_pointe(score: Score) -> bool:
+    """Whether the score stands on pointe anywhere, for which the dancer puts on the shoes."""
+    return any(
+        leg.support is not None and leg.support.floor is FloorContact.POINTE
+        for frame in score.resolved()
+        for leg in frame.legs.values()
+    )
+
+
 def check_reach(score: Score, dancer: Anthropometry | None, style: Style | None) -> None:
     """Refuse signs that this dancer's limbs do not reach, before the solver is loaded.
 
@@ -213,7 +222,7 @@ def prepare(
 
     return solve_key_poses(
         score,
-        KeyPoseSolver(dancer_model(dancer)),
+        KeyPoseSolver(dancer_model(dancer, pointe_shoes=_on_pointe(score))),
         style=style,
         tempo=tempo,
         still=still,

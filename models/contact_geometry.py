@@ -18,6 +18,7 @@ __all__ = [
     "SOLE_CLASS",
     "add_floor",
     "add_limb_contacts",
+    "add_pointe_shoes",
     "add_soles",
 ]
 
@@ -86,15 +87,13 @@ def add_floor(spec: mujoco.MjSpec) -> None:
 
 
 def add_soles(spec: mujoco.MjSpec, skeleton: Skeleton) -> None:
-    """What stands on the floor: heel, ball, tip of the toes, and the platform of a pointe shoe.
+    """Six spheres a foot: heel, ball and tip of the toes, an inner and an outer one of each.
 
-    Of each a left and a right sphere, of the platform four. The ball's lie on the axis of the toe
-    joint, so that one set serves the flat foot and demi-pointe, and belong to the toes, which stay
-    where they are while the foot rises over them.
+    The ball's lie on the axis of the toe joint, so that one set serves the flat foot and
+    demi-pointe, and belong to the toes, which stay where they are while the foot rises over them.
     """
     half = skeleton.ball_half_breadth - _SOLE_RADIUS
     lift = _SOLE_RADIUS - skeleton.ankle_height
-    long, broad = PLATFORM
     for side in SIDES:
         foot, toe = spec.body(f"{side}_foot"), spec.body(f"{side}_toe")
         for edge, s in (("inner", -side_sign(side)), ("outer", side_sign(side))):
@@ -103,11 +102,22 @@ def add_soles(spec: mujoco.MjSpec, skeleton: Skeleton) -> None:
             _add_sole(toe, f"{side}_ball_{edge}", [0, s * half, 0])
             tip = [skeleton.toe_length - _SOLE_RADIUS, s * 0.5 * half, 0]
             _add_sole(toe, f"{side}_tip_{edge}", tip)
-            end = skeleton.toe_length - _PLATFORM_RADIUS
-            for part, rise in (("under", 0.0), ("upper", long)):
-                height = PLATFORM_RISE - 0.5 * long - _SOLE_RADIUS + rise
-                place = [end, s * 0.5 * broad, height]
-                _add_sole(toe, f"{side}_platform_{part}_{edge}", place, _PLATFORM_RADIUS)
+
+
+def add_pointe_shoes(spec: mujoco.MjSpec, skeleton: Skeleton) -> None:
+    """The corners of the platform at the toes' end, four small spheres a foot.
+
+    In soft shoes the tip is a line of two spheres, on which nobody stands.
+    """
+    long, broad = PLATFORM
+    end = skeleton.toe_length - _PLATFORM_RADIUS
+    middle = PLATFORM_RISE - _SOLE_RADIUS
+    for side in SIDES:
+        for edge, s in (("inner", -side_sign(side)), ("outer", side_sign(side))):
+            for part, rise in (("under", -0.5 * long), ("upper", 0.5 * long)):
+                corner = [end, s * 0.5 * broad, middle + rise]
+                name = f"{side}_platform_{part}_{edge}"
+                _add_sole(spec.body(f"{side}_toe"), name, corner, _PLATFORM_RADIUS)
 
 
 PLATFORM = (0.03, 0.04)

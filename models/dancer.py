@@ -17,7 +17,12 @@ import numpy as np
 from enpointe.models import anatomy
 from enpointe.models.anatomy import NECK_RISE, SIDES, Hinge, Skeleton, mirrored, side_sign
 from enpointe.models.anthropometry import Anthropometry, Segment
-from enpointe.models.contact_geometry import add_floor, add_limb_contacts, add_soles
+from enpointe.models.contact_geometry import (
+    add_floor,
+    add_limb_contacts,
+    add_pointe_shoes,
+    add_soles,
+)
 
 __all__ = ["TIMESTEP", "build_dancer", "dancer_model", "dancer_spec"]
 
@@ -25,26 +30,35 @@ TIMESTEP = 0.001
 """Physics step, s. With light hands and toes, PD torques need 1 ms (see docs/physics.md)."""
 
 
-def build_dancer(measures: Anthropometry | None = None, *, flesh: bool = True) -> mujoco.MjModel:
+def build_dancer(
+    measures: Anthropometry | None = None, *, flesh: bool = True, pointe_shoes: bool = False
+) -> mujoco.MjModel:
     """Compile the dancer.
 
     Args:
         measures: Height, mass and sex; a dancer of 1.68 m and 54 kg without.
         flesh: Clothe her; a bare one moves the same and is built and copied faster.
+        pointe_shoes: Give her a platform to stand on pointe; soft shoes without.
 
     Returns:
         A model of 36 hinges on a free root (nq 43, nv 42, nu 36), with its floor.
     """
-    return dancer_spec(measures or Anthropometry(), flesh=flesh).compile()
+    return dancer_spec(
+        measures or Anthropometry(), flesh=flesh, pointe_shoes=pointe_shoes
+    ).compile()
 
 
 @lru_cache(maxsize=4)
-def dancer_model(measures: Anthropometry | None = None, *, flesh: bool = True) -> mujoco.MjModel:
+def dancer_model(
+    measures: Anthropometry | None = None, *, flesh: bool = True, pointe_shoes: bool = False
+) -> mujoco.MjModel:
     """The same dancer, compiled once a process. Treat it as read-only; copy it to change it."""
-    return build_dancer(measures, flesh=flesh)
+    return build_dancer(measures, flesh=flesh, pointe_shoes=pointe_shoes)
 
 
-def dancer_spec(measures: Anthropometry, *, flesh: bool = True) -> mujoco.MjSpec:
+def dancer_spec(
+    measures: Anthropometry, *, flesh: bool = True, pointe_shoes: bool = False
+) -> mujoco.MjSpec:
     """The dancer as an `MjSpec`, for those who want to change it before compiling."""
     skeleton = Skeleton(measures)
     spec = mujoco.MjSpec()
@@ -59,6 +73,8 @@ def dancer_spec(measures: Anthropometry, *, flesh: bool = True) -> mujoco.MjSpec
         _add_leg(pelvis, skeleton, side)
     add_limb_contacts(spec, skeleton)
     add_soles(spec, skeleton)
+    if pointe_shoes:
+        add_pointe_shoes(spec, skeleton)
     if flesh:
         from enpointe.models.flesh import add_flesh
 
