@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from enpointe.posing import Poses as Poses
     from enpointe.posing import pose as pose
     from enpointe.report import write_report as write_report
+    from enpointe.sweeping import Sweep as Sweep
+    from enpointe.sweeping import sweep as sweep
 
 __version__ = "0.1.0"
 
@@ -43,6 +45,8 @@ _HOMES = {
     "perform": "enpointe.performing",
     "pose": "enpointe.posing",
     "recognise": "enpointe.notating",
+    "Sweep": "enpointe.sweeping",
+    "sweep": "enpointe.sweeping",
     "write_report": "enpointe.report",
 }
 
@@ -52,6 +56,7 @@ __all__ = [
     "Notation",
     "Performance",
     "Poses",
+    "Sweep",
     "__version__",
     "compare",
     "diagnose",
@@ -60,6 +65,7 @@ __all__ = [
     "perform",
     "pose",
     "recognise",
+    "sweep",
     "write_report",
 ]
 __getattr__, __dir__ = lazy(__name__, _HOMES)

@@ -237,6 +237,74 @@ def notate(
 
 
 @app.command()
+def sweep(
+    source: Score,
+    runs: Annotated[int, typer.Option(help="How many runs.")] = 40,
+    disturb: Annotated[
+        str | None,
+        typer.Option(
+            help="What is disturbed: mass, com, friction, noise, delay, push, rate, softness; each"
+            " with an amount or a range if it is to be unusual (push=8,friction=0.4:1); all; none."
+            " The first six if left out."
+        ),
+    ] = None,
+    controller: Annotated[
+        ControllerName, typer.Option(help="wholebody or pd.")
+    ] = ControllerName.WHOLEBODY,
+    effort: Effort = None,
+    tempo: Tempo = None,
+    processes: Annotated[
+        int | None, typer.Option(help="Processes on this machine; one a processor if left out.")
+    ] = None,
+    cluster: Annotated[
+        str | None,
+        typer.Option(metavar="ADDRESS", help="Of a Dask scheduler, instead of processes here."),
+    ] = None,
+    factors: Annotated[
+        str | None,
+        typer.Option("--map", help="Two factors for the heat map, as in push_at,friction."),
+    ] = None,
+    at_least: Annotated[
+        float, typer.Option(help="Share of runs to be completed for the answer to be yes.")
+    ] = 0.95,
+    height: Height = 1.68,
+    mass: Mass = 54.0,
+    sex: SexOption = SexName.FEMALE,
+    turnout: Turnout = 66.0,
+    out: Out = None,
+    json: Json = False,
+    quiet: Quiet = False,
+    seed: Annotated[int, typer.Option(help="Of all that is drawn.")] = 0,
+) -> int:
+    """Dance a score many times, disturbed in as many ways; started again, it goes on."""
+    from enpointe.report.heatmap import find_factors
+    from enpointe.report.sweeps import write_sweep
+
+    console = Console(json=json, quiet=quiet)
+    mapped = None if factors is None else find_factors(factors)
+    folder = _folder(out, f"{Path(source).stem}-swept")
+    with console.progress() as progress:
+        swept = enpointe.sweep(
+            source,
+            runs=runs,
+            seed=seed,
+            controller=controller.value,
+            disturb=disturb,
+            effort=effort,
+            tempo=tempo,
+            processes=processes,
+            cluster=cluster,
+            style=_style(turnout),
+            dancer=_dancer(height, mass, sex),
+            out=folder,
+            progress=progress,
+        )
+        files = {**write_sweep(swept, folder, mapped), **swept.save(folder)}
+    console.show(swept.summary(), files, folder)
+    return DONE if swept.completed_fraction >= at_least else NO
+
+
+@app.command()
 def doctor(
     json: Json = False,
     quiet: Quiet = False,

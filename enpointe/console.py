@@ -117,6 +117,9 @@ def _flat(figures: Mapping[str, object], prefix: str = "") -> Iterator[tuple[str
                 broken = [r["rule"] for r in entry["rules"] if not r["held"]]
                 verdict = f"broken: {', '.join(broken)}" if broken else "all rules held"
                 yield entry["name"], f"{verdict} ({entry['solve_ms']:.0f} ms)"
+        elif name == "failures" and isinstance(value, list):
+            fallen = [str(entry["run"]) for entry in value]
+            yield label, f"{len(fallen)}: runs {', '.join(fallen)}" if fallen else "none"
         elif isinstance(value, float):
             yield label, f"{value:.4g}"
         elif isinstance(value, list):

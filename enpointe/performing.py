@@ -12,13 +12,24 @@ from enpointe.errors import EnpointeError
 from enpointe.notation import FloorContact, Score, load_score
 
 if TYPE_CHECKING:
+    import mujoco
+
     from enpointe.controllers import Recording
     from enpointe.models import Anthropometry, KeyPose, Style
     from enpointe.motion import Choreography, Effort, Interpolation, Motion
     from enpointe.motion.wrist import LogisticFit
     from enpointe.sim.measures import Measures
 
-__all__ = ["CONTROLLERS", "Performance", "Progress", "dance", "perform", "prepare", "silent"]
+__all__ = [
+    "CONTROLLERS",
+    "Performance",
+    "Progress",
+    "dance",
+    "model_of",
+    "perform",
+    "prepare",
+    "silent",
+]
 
 Progress = Callable[[str, float, float], None]
 """Called with what is being done, how much of it is done, and how much there is."""
@@ -176,6 +187,13 @@ def _on_pointe(score: Score) -> bool:
     )
 
 
+def model_of(score: Score, dancer: Anthropometry | None) -> mujoco.MjModel:
+    """The dancer in the shoes that a score needs; 1.68 m and 54 kg if None."""
+    from enpointe.models.dancer import dancer_model
+
+    return dancer_model(dancer, pointe_shoes=_on_pointe(score))
+
+
 def check_reach(score: Score, dancer: Anthropometry | None, style: Style | None) -> None:
     """Refuse signs that this dancer's limbs do not reach, before the solver is loaded.
 
@@ -217,12 +235,12 @@ def prepare(
     score = source if isinstance(source, Score) else load_score(source)
     score.duration(tempo)
     check_reach(score, dancer, style)
-    from enpointe.models import KeyPoseSolver, dancer_model
+    from enpointe.models import KeyPoseSolver
     from enpointe.motion import solve_key_poses
 
     return solve_key_poses(
         score,
-        KeyPoseSolver(dancer_model(dancer, pointe_shoes=_on_pointe(score))),
+        KeyPoseSolver(model_of(score, dancer)),
         style=style,
         tempo=tempo,
         still=still,
