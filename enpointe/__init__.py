@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING
 from enpointe.lazy import lazy
 
 if TYPE_CHECKING:
+    from enpointe.checking import Check as Check
+    from enpointe.checking import check as check
     from enpointe.comparing import Comparison as Comparison
     from enpointe.comparing import compare as compare
     from enpointe.doctor import diagnose as diagnose
@@ -33,11 +35,13 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 _HOMES = {
+    "Check": "enpointe.checking",
     "Comparison": "enpointe.comparing",
     "EnpointeError": "enpointe.errors",
     "Notation": "enpointe.notating",
     "Performance": "enpointe.performing",
     "Poses": "enpointe.posing",
+    "check": "enpointe.checking",
     "compare": "enpointe.comparing",
     "diagnose": "enpointe.doctor",
     "load_score": "enpointe.notation",
@@ -51,6 +55,7 @@ _HOMES = {
 }
 
 __all__ = [
+    "Check",
     "Comparison",
     "EnpointeError",
     "Notation",
@@ -58,6 +63,7 @@ __all__ = [
     "Poses",
     "Sweep",
     "__version__",
+    "check",
     "compare",
     "diagnose",
     "load_score",

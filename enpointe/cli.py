@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 import enpointe
-from enpointe.console import Console
+from enpointe.console import Console, rows
 from enpointe.errors import EnpointeError
 
 if TYPE_CHECKING:
@@ -234,6 +234,43 @@ def notate(
             console.print(f"beat {each.frame.beat}: {each.recognition.name}")
         console.print(f"score: {files['score']}")
     return DONE
+
+
+@app.command()
+def check(
+    source: Annotated[
+        str,
+        typer.Argument(
+            help="A motion or a recording (.npz, as perform writes them), a shipped score's name,"
+            " or a .bmn file."
+        ),
+    ],
+    effort: Effort = None,
+    tempo: Tempo = None,
+    height: Height = 1.68,
+    mass: Mass = 54.0,
+    sex: SexOption = SexName.FEMALE,
+    turnout: Turnout = 66.0,
+    json: Json = False,
+    quiet: Quiet = False,
+    seed: Seed = 0,
+) -> int:
+    """Look at balance and foot contact of a movement, without dancing it."""
+    console = Console(json=json, quiet=quiet)
+    with console.progress() as progress:
+        found = enpointe.check(
+            source,
+            effort=effort,
+            tempo=tempo,
+            style=_style(turnout),
+            dancer=_dancer(height, mass, sex),
+            progress=progress,
+        )
+    if json:
+        console.print_json(found.summary())
+    else:
+        console.print(rows(found.lines()))
+    return NO if found.faults else DONE
 
 
 @app.command()

@@ -46,7 +46,7 @@ def test_one_process_two_processes_and_a_cluster_agree() -> None:
 def test_a_cluster_that_is_not_there_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("distributed")
     monkeypatch.setattr("enpointe.sim.workers.CONNECTING", 0.5)
-    with pytest.raises(EnpointeError, match="no Dask scheduler answers at tcp://127.0.0.1:9"):
+    with pytest.raises(EnpointeError, match="no Dask scheduler answers"):
         [*on_cluster(trial("none"), [0], "tcp://127.0.0.1:9")]
 
 
