@@ -29,8 +29,8 @@ from enpointe.controllers import PD, WholeBody, perform
 from enpointe.controllers.plant import Plant
 from enpointe.models import KeyPoseSolver, dancer_model
 from enpointe.models.foot_positions import support_hull
-from enpointe.models.rules.balance import half_planes
 from enpointe.motion import Motion
+from enpointe.sim.balance import room
 from enpointe.sim.measures import measure
 from enpointe.sim.push import Push, PushedBody, largest_push
 
@@ -74,10 +74,8 @@ def bound(motion: Motion, direction: Array) -> float:
     plant = Plant(motion.model)
     plant.place(motion.qpos[0])
     soles = plant.data.geom_xpos[plant.soles_on_floor()][:, :2]
-    normals, offsets = half_planes(support_hull(soles))
-    ahead = normals @ direction
-    room = (offsets - normals @ plant.com[:2])[ahead > 1e-9] / ahead[ahead > 1e-9]
-    return largest_push(float(room.min()), plant.com[2], plant.mass, plant.gravity, DURATION)
+    reach = room(support_hull(soles), plant.com[:2], direction)
+    return largest_push(reach, plant.com[2], plant.mass, plant.gravity, DURATION)
 
 
 def survives(motion: Motion, controller: str, impulse: Array) -> bool:

@@ -19,6 +19,7 @@ __all__ = [
     "margin",
     "margin_of_stability",
     "penetration",
+    "room",
     "slip",
     "support",
     "zero_moment_point",
@@ -121,6 +122,20 @@ def margin_of_stability(hull: Array, com: Array, velocity: Array, gravity: float
     infinity in the air.
     """
     return margin(hull, extrapolated_com(com, velocity, gravity))
+
+
+def room(hull: Array, point: Array, direction: Array) -> float:
+    """How far a point inside a support is from its edge along a direction, m; positive inside.
+
+    Args:
+        hull: (H, 2), counter-clockwise, with an inside.
+        point: (2,), m.
+        direction: (2,), a unit vector.
+    """
+    normals, offsets = half_planes(hull)
+    ahead = normals @ direction
+    faces = ahead > 1e-9
+    return float(np.min((offsets - normals @ point)[faces] / ahead[faces]))
 
 
 def area(hull: Array) -> float:

@@ -29,6 +29,8 @@ Array = NDArray[np.float64]
 _Kind = TypeVar("_Kind", Equality, Limits, Bounds)
 REGULARISATION = 1e-6
 """Cost of each squared unknown, in rad/s^2 and N: it settles how redundant soles share a force."""
+TOLERANCE = 1e-3
+"""How far a solution may be outside a constraint, N, N m or rad/s^2: rounding, no more."""
 
 
 @dataclass(frozen=True)
@@ -89,11 +91,32 @@ class WholeBodyProblem:
         return [limit for limit in self.limits.values() if isinstance(limit, kind)]
 
     def solve(self, solver: str = "daqp") -> Array | None:
-        """The unknowns (n,), or None where the constraints leave no solution."""
+        """The unknowns (n,), or None where the constraints leave no solution.
+
+        What a solver returns is believed only after a look at its constraints.
+        """
         solution = qpsolvers.solve_problem(self.programme, solver)
         if not solution.found or solution.x is None or not np.all(np.isfinite(solution.x)):
             return None
-        return np.asarray(solution.x)
+        unknowns = np.asarray(solution.x)
+        return unknowns if self.violation(unknowns) < TOLERANCE else None
+
+    def violation(self, unknowns: Array) -> float:
+        """The largest amount by which any constraint is broken: N, N m, rad/s^2."""
+        worst = 0.0
+        for limit in self.limits.values():
+            if isinstance(limit, Bounds):
+                low, high, value = limit.low, limit.high, unknowns
+            else:
+                value = limit.matrix @ unknowns
+                low, high = (
+                    (limit.target, limit.target)
+                    if isinstance(limit, Equality)
+                    else (limit.low, limit.high)
+                )
+            outside = np.maximum(low - value, value - high)
+            worst = max(worst, float(outside.max(initial=0.0)))
+        return worst
 
     def errors(self, unknowns: Array) -> dict[str, Array]:
         """What each task is left with, A x - b, in its own unit."""

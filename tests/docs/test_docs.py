@@ -20,6 +20,7 @@ import pytest
 
 import enpointe
 from enpointe.notation import Score, parse_score
+from enpointe.sim.balance_table import COLUMNS
 
 ROOT = Path(__file__).resolve().parents[2]
 if not (ROOT / "docs" / "index.md").is_file():
@@ -278,9 +279,14 @@ def test_fields_of_a_physical_performance_and_a_comparison(phrase: Score) -> Non
     figures = comparison.summary()
     physical = comparison.performances["physical"].summary()
     assert set(physical) == fields("kinematic") | fields("physical")
+    assert fields("wholebody") == {"qp_failures"}
     assert set(figures) == {"variants", "differences"}
     for difference in figures["differences"]:  # type: ignore[attr-defined]
         assert set(difference) == fields("difference")
+
+
+def test_columns_of_the_balance_table() -> None:
+    assert fields("balance") == set(COLUMNS)
 
 
 def test_fields_of_poses(phrase: Score) -> None:

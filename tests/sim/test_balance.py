@@ -11,7 +11,19 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from enpointe.models.foot_positions import support_hull
-from enpointe.sim.balance import LOADED, centre_of_pressure, margin, slip, support
+from enpointe.sim.balance import (
+    LOADED,
+    area,
+    centre_of_pressure,
+    extrapolated_com,
+    margin,
+    margin_of_stability,
+    penetration,
+    room,
+    slip,
+    support,
+    zero_moment_point,
+)
 
 Array = NDArray[np.float64]
 SQUARE = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
@@ -140,3 +152,70 @@ def test_bobbing_is_not_slipping() -> None:
     places, forces = np.zeros((5, 1, 3)), np.full((5, 1, 3), 100.0)
     places[:, 0, 2] = [0, 0.001, -0.001, 0.002, 0]
     assert not slip(places, forces).any()
+
+
+@given(st.lists(points, min_size=3, max_size=12, unique=True), points)
+def test_margin_and_area_against_shapely(
+    corners: list[tuple[float, float]], at: tuple[float, float]
+) -> None:
+    geometry = pytest.importorskip("shapely.geometry")
+    cloud, point = np.round(np.array(corners), 3), np.round(np.array(at), 3)
+    hull = support_hull(cloud)
+    assume(len(hull) > 2)
+    shape = geometry.MultiPoint(cloud).convex_hull
+    gap = shape.exterior.distance(geometry.Point(point))
+    inside = shape.covers(geometry.Point(point))
+    assert margin(hull, point) == pytest.approx(gap if inside else -gap, abs=1e-9)
+    assert area(hull) == pytest.approx(shape.area, abs=1e-9)
+
+
+@given(st.floats(0, 2 * np.pi), st.tuples(st.floats(0.1, 0.9), st.floats(0.1, 0.9)))
+def test_room_ends_at_the_edge(angle: float, at: tuple[float, float]) -> None:
+    direction = np.array([np.cos(angle), np.sin(angle)])
+    far = room(SQUARE, np.array(at), direction)
+    assert margin(SQUARE, np.array(at) + far * direction) == pytest.approx(0.0, abs=1e-9)
+    assert far >= margin(SQUARE, np.array(at)) - 1e-9
+
+
+def test_areas_by_hand() -> None:
+    assert area(SQUARE) == pytest.approx(1.0)
+    assert area(0.5 * SQUARE + 3.0) == pytest.approx(0.25)
+    assert area(SQUARE[:2]) == area(SQUARE[:0]) == 0.0
+
+
+def test_at_rest_the_zero_moment_point_is_below_the_weight() -> None:
+    com, still = np.array([0.1, -0.2, 0.9]), np.zeros(3)
+    np.testing.assert_allclose(zero_moment_point(com, still, still, 54.0, 9.81), com[:2])
+
+
+@given(
+    st.lists(st.floats(-3, 3), min_size=3, max_size=3),
+    st.lists(st.floats(-20, 20), min_size=3, max_size=3),
+)
+def test_a_force_at_the_zero_moment_point_turns_the_body_as_it_turns(
+    acceleration: list[float], rate: list[float]
+) -> None:
+    """(p - c) x F gives L' about the level axes: the definition itself."""
+    com, mass = np.array([0.3, -0.1, 0.95]), 54.0
+    force = mass * (np.array(acceleration) + np.array([0, 0, 9.81]))
+    point = zero_moment_point(com, np.array(acceleration), np.array(rate), mass, 9.81)
+    moment = np.cross(np.array([*point, 0.0]) - com, force)
+    np.testing.assert_allclose(moment[:2], rate[:2], atol=1e-9)
+
+
+def test_in_free_fall_there_is_no_zero_moment_point() -> None:
+    fall = np.array([0.0, 0.0, -9.81])
+    assert np.isnan(zero_moment_point(np.ones(3), fall, np.zeros(3), 54.0, 9.81)).all()
+
+
+def test_the_extrapolated_centre_of_mass_is_ahead_by_speed_over_frequency() -> None:
+    com, velocity = np.array([0.5, 0.5, 9.81 / 9]), np.array([0.3, -0.6, 5.0])
+    np.testing.assert_allclose(extrapolated_com(com, velocity, 9.81), [0.6, 0.3])
+    assert margin_of_stability(SQUARE, com, velocity, 9.81) == pytest.approx(0.3)
+    assert margin_of_stability(SQUARE, com, 10 * velocity, 9.81) < 0
+    assert margin_of_stability(SQUARE[:0], com, velocity, 9.81) == -inf
+
+
+def test_the_deepest_sole_counts() -> None:
+    assert penetration(np.array([0.0, 3e-4, 1e-4])) == 3e-4
+    assert penetration(np.zeros(0)) == 0.0
