@@ -173,8 +173,8 @@ def test_noise_is_on_what_is_read_and_not_on_what_happens() -> None:
 # -- Trials ------------------------------------------------------------------------------------
 
 
-def trial(disturb: str, seconds: float = 0.4, seed: int = 0) -> Trial:
-    return Trial(still(seconds), "pd", Disturbances.parse(disturb), seed)
+def trial(disturb: str, seconds: float = 0.4, *, controller: str = "pd") -> Trial:
+    return Trial(still(seconds), controller, Disturbances.parse(disturb), seed=0)
 
 
 def test_the_push_that_was_asked_for_is_no_help() -> None:

@@ -26,7 +26,7 @@ def numbered(run: int) -> Outcome:
 @pytest.mark.slow
 def test_one_process_two_processes_and_a_cluster_agree() -> None:
     distributed = pytest.importorskip("distributed")
-    several = trial("all", 0.2)
+    several = trial("all", 0.15, controller="wholebody")
     runs = range(5)
 
     def by_number(outcomes: list[Outcome]) -> list[Outcome]:
