@@ -98,18 +98,23 @@ def on_cluster(trial: Trial, runs: Iterable[int], address: str) -> Iterator[Outc
     with client:
         if not client.nthreads():
             raise EnpointeError(f"the Dask scheduler at {address} has no workers; start some")
-        sent = client.scatter(trial, broadcast=True)
+        with _cluster_faults(address):
+            sent = client.scatter(trial, broadcast=True)
         futures = client.map(_dance_sent, list(runs), trial=sent, pure=False)
         try:
             for future in distributed.as_completed(futures, loop=client.loop):
-                yield _result(future, address)
+                with _cluster_faults(address):
+                    outcome: Outcome = future.result()
+                yield outcome
         finally:
             client.cancel(futures)
 
 
-def _result(future: Any, address: str) -> Outcome:
+@contextmanager
+def _cluster_faults(address: str) -> Iterator[None]:
+    """What goes wrong at a worker comes as any exception."""
     try:
-        outcome: Outcome = future.result()
+        yield
     except EnpointeError:
         raise
     except Exception as error:
@@ -118,7 +123,6 @@ def _result(future: Any, address: str) -> Outcome:
             f"a worker of {address} failed, {type(error).__name__}: {reason}; all workers need the"
             " same enpointe as this machine"
         ) from error
-    return outcome
 
 
 def _begin(trial: Trial) -> None:

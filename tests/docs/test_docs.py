@@ -261,6 +261,24 @@ def test_fields_of_a_kinematic_performance(phrase: Score) -> None:
     assert set(dance.summary()) == fields("kinematic")
 
 
+def test_fields_of_a_check(phrase: Score) -> None:
+    assert set(enpointe.check(phrase).summary()) == fields("check")
+
+
+def test_fields_of_a_sweep() -> None:
+    from enpointe.models import dancer_model
+    from enpointe.sim.disturbance import Disturbances, Factors
+    from enpointe.sim.trial import Outcome
+
+    model = dancer_model(flesh=False)
+    factors = Factors().figures(model, model.qpos0)
+    fallen = Outcome(0, factors, False, 1.0, "fell", 0.0, None, None, None, None, None)
+    swept = enpointe.Sweep("T", 1.0, "pd", Disturbances.parse(None), 0, (fallen,), 1, 1.0)
+    figures = swept.summary()
+    assert set(figures) == fields("sweep")
+    assert set(figures["failures"][0]["factors"]) == fields("factors")  # type: ignore[index]
+
+
 @pytest.mark.slow
 def test_fields_of_a_physical_performance_and_a_comparison(phrase: Score) -> None:
     comparison = enpointe.compare(phrase)
