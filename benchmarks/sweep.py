@@ -37,7 +37,7 @@ def local_cluster() -> Iterator[str | None]:
     except ImportError:
         yield None
         return
-    with LocalCluster(n_workers=WORKERS, threads_per_worker=1, dashboard_address=None) as cluster:
+    with LocalCluster(n_workers=WORKERS, threads_per_worker=1, dashboard_address=":0") as cluster:
         yield cluster.scheduler_address
 
 

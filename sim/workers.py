@@ -9,7 +9,7 @@ import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Iterable, Iterator
+from collections.abc import Generator, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
@@ -30,7 +30,9 @@ CONNECTING = 10.0
 _trial: Trial | None = None
 
 
-def on_processes(trial: Trial, runs: Iterable[int], processes: int) -> Iterator[Outcome]:
+def on_processes(
+    trial: Trial, runs: Iterable[int], processes: int
+) -> Generator[Outcome, None, None]:
     """Dance on processes of this machine; outcomes as they come.
 
     Each process is a fresh interpreter, of one thread of linear algebra, even where there is but
@@ -73,7 +75,7 @@ def _finished(
             yield future.result()
 
 
-def on_cluster(trial: Trial, runs: Iterable[int], address: str) -> Iterator[Outcome]:
+def on_cluster(trial: Trial, runs: Iterable[int], address: str) -> Generator[Outcome, None, None]:
     """Dance on the workers of a Dask scheduler, where enpointe must be installed too.
 
     Args:

@@ -16,7 +16,14 @@ from enpointe.errors import EnpointeError
 from enpointe.report.chart import COM, GREY, INK, LEFT, quiet, to_svg
 from enpointe.sim.trial import Outcome
 
-__all__ = ["FACTORS", "find_factors", "heat_map_png", "heat_map_svg", "mapped_factors"]
+__all__ = [
+    "FACTORS",
+    "count_runs",
+    "find_factors",
+    "heat_map_png",
+    "heat_map_svg",
+    "mapped_factors",
+]
 
 Array = NDArray[np.float64]
 
@@ -105,19 +112,36 @@ def heat_map_svg(outcomes: Sequence[Outcome], factors: Sequence[str], name: str)
     return to_svg(_map(outcomes, factors), name, "Share of runs completed over two factors")
 
 
-def _map(outcomes: Sequence[Outcome], factors: Sequence[str]) -> Figure:
-    across = _Bins.of(outcomes, factors[0])
-    up = _Bins.of(outcomes, factors[1]) if len(factors) > 1 else _Bins.single(len(outcomes))
-    completed = np.array([o.completed for o in outcomes])
+def count_runs(outcomes: Sequence[Outcome], factors: Sequence[str]) -> tuple[Array, Array]:
+    """Runs completed and runs in all, by the cells of a map, each (up, across).
+
+    Args:
+        outcomes: Of a sweep.
+        factors: One or two names of `FACTORS`; the first across.
+    """
+    across, up = _axes(outcomes, factors)
     count = np.zeros((up.cells, across.cells))
-    danced = count.copy()
+    completed = count.copy()
     np.add.at(count, (up.index, across.index), 1.0)
-    np.add.at(danced, (up.index, across.index), completed)
+    np.add.at(completed, (up.index, across.index), [o.completed for o in outcomes])
+    return completed, count
+
+
+def _axes(outcomes: Sequence[Outcome], factors: Sequence[str]) -> tuple[_Bins, _Bins]:
+    across = _Bins.of(outcomes, factors[0])
+    return across, (
+        _Bins.of(outcomes, factors[1]) if len(factors) > 1 else _Bins.single(len(outcomes))
+    )
+
+
+def _map(outcomes: Sequence[Outcome], factors: Sequence[str]) -> Figure:
+    across, up = _axes(outcomes, factors)
+    completed, count = count_runs(outcomes, factors)
     figure = Figure(figsize=(8.25, 1.3 + 0.45 * up.cells))
     axes = figure.subplots()
-    share = np.divide(danced, count, out=np.full(count.shape, np.nan), where=count > 0)
+    share = np.divide(completed, count, out=np.full(count.shape, np.nan), where=count > 0)
     picture = axes.imshow(share, cmap=_COLOURS, vmin=0.0, vmax=1.0, origin="lower", aspect="auto")
-    _write_counts(axes, danced, count, share)
+    _write_counts(axes, completed, count, share)
     for axis, bins in ((axes.xaxis, across), (axes.yaxis, up)):
         axis.set_ticks(bins.ticks, bins.labels)
     axes.set_xlabel(across.name)
@@ -130,10 +154,10 @@ def _map(outcomes: Sequence[Outcome], factors: Sequence[str]) -> Figure:
     return figure
 
 
-def _write_counts(axes: Axes, danced: Array, count: Array, share: Array) -> None:
+def _write_counts(axes: Axes, completed: Array, count: Array, share: Array) -> None:
     for (row, column), runs in np.ndenumerate(count):
         strong = runs and abs(share[row, column] - 0.5) > 0.3
-        text = f"{danced[row, column]:.0f} of {runs:.0f}" if runs else "no runs"
+        text = f"{completed[row, column]:.0f} of {runs:.0f}" if runs else "no runs"
         colour = "white" if strong else INK if runs else GREY
         axes.text(column, row, text, ha="center", va="center", color=colour, fontsize=8)
 

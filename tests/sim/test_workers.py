@@ -37,10 +37,18 @@ def test_one_process_two_processes_and_a_cluster_agree() -> None:
     assert by_number([*on_processes(several, runs, 2)]) == alone
     assert multiprocessing.active_children() == []
     with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, dashboard_address=None, protocol="tcp"
+        n_workers=2, threads_per_worker=1, dashboard_address=":0", protocol="tcp"
     ) as cluster:
         danced = on_cluster(several, runs, cluster.scheduler_address)
         assert by_number([*danced]) == alone
+
+
+@pytest.mark.slow
+def test_who_stops_listening_ends_the_processes() -> None:
+    outcomes = on_processes(trial("none", 0.05), range(1000), 1)
+    assert next(outcomes).run == 0
+    outcomes.close()
+    assert multiprocessing.active_children() == []
 
 
 def test_a_cluster_that_is_not_there_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
