@@ -131,7 +131,16 @@ def _begin(trial: Trial) -> None:
     global _trial
     # Whoever stops the sweep ends this process; it has nothing to say about it.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
     _trial = trial
+
+
+def _end_with_parent() -> None:
+    """Nobody is left behind when the sweep itself is killed."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
 
 
 def _dance(run: int) -> Outcome:
