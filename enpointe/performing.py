@@ -28,6 +28,7 @@ __all__ = [
     "model_of",
     "perform",
     "prepare",
+    "reference",
     "silent",
 ]
 
@@ -311,6 +312,36 @@ def perform(
 LONGEST_HOLD = 600.0
 
 
+def reference(
+    choreography: Choreography,
+    effort: Effort,
+    interpolation: Interpolation,
+    controller: str,
+    *,
+    hold: float | None = None,
+    progress: Progress = silent,
+) -> Motion:
+    """The movement of a solved score as a controller is asked for it.
+
+    The whole-body controller gets one that can be danced, with its weight over the feet that stand.
+    """
+    from enpointe.motion import interpolate
+
+    motion = interpolate(
+        choreography,
+        effort,
+        interpolation,
+        hold=hold,
+        progress=lambda done, total: progress("movement", done, total),
+    )
+    if controller != "wholebody":
+        return motion
+    from enpointe.motion.contact_plan import steps
+    from enpointe.motion.danceable import danceable
+
+    return danceable(motion).motion if steps(motion) else motion
+
+
 def dance(
     choreography: Choreography,
     effort: Effort,
@@ -322,14 +353,8 @@ def dance(
     progress: Progress = silent,
 ) -> Performance:
     """Move and, unless kinematic, physically perform a solved score; see `perform`."""
-    from enpointe.motion import interpolate
-
-    motion = interpolate(
-        choreography,
-        effort,
-        interpolation,
-        hold=hold,
-        progress=lambda done, total: progress("movement", done, total),
+    motion = reference(
+        choreography, effort, interpolation, controller, hold=hold, progress=progress
     )
     if controller == "kinematic":
         return Performance(

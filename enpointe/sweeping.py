@@ -15,11 +15,10 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
 
-import enpointe
 from enpointe.errors import EnpointeError
 from enpointe.files import write_text
 from enpointe.notation import Score, format_score, load_score
-from enpointe.performing import Progress, model_of, prepare, silent
+from enpointe.performing import Progress, model_of, prepare, reference, silent
 
 if TYPE_CHECKING:
     from enpointe.models import Anthropometry, Style
@@ -145,8 +144,9 @@ def sweep(
 ) -> Sweep:
     """Dance a score many times, the body, the floor and the senses changed each time.
 
-    The score is solved and made danceable once. Run k is the same whichever process dances it and
-    however many runs there are. The controller is never told what was changed.
+    The score is solved once, and for the whole-body controller made danceable. Run k is the same
+    whichever process dances it and however many runs there are. The controller is never told what
+    was changed.
 
     Args:
         source: A shipped score's name, a `.bmn` file, or a score.
@@ -193,7 +193,7 @@ def sweep(
     asked = _Asked(score, effort, tempo, style, dancer)
     key = asked.key(controller, disturbances, seed)
     kept = None if out is None else Path(out) / f"reference-{key}.npz"
-    trial = Trial(asked.motion(kept, progress), controller, disturbances, seed)
+    trial = Trial(asked.motion(controller, kept, progress), controller, disturbances, seed)
     workers = processes or os.cpu_count() or 1
     journal = None if out is None else Path(out) / "runs.jsonl"
     outcomes, fresh, wall_time = _outcomes(trial, runs, key, journal, workers, cluster, progress)
@@ -222,7 +222,7 @@ class _Asked:
 
     def key(self, controller: str, disturbances: Disturbances, seed: int) -> str:
         """Sixteen hexadecimal digits that differ when anything does on which runs depend."""
-        import mujoco
+        from enpointe.sim.fingerprint import code_digest
 
         configuration = {
             "score": format_score(self.score),
@@ -233,26 +233,24 @@ class _Asked:
             "controller": controller,
             "disturbances": {name: list(r) for name, r in disturbances.ranges.items()},
             "seed": seed,
-            "enpointe": enpointe.__version__,
-            "mujoco": mujoco.__version__,
+            "code": code_digest(),
         }
         text = json.dumps(configuration, sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()[:16]
 
-    def motion(self, kept: Path | None, progress: Progress) -> Motion:
-        """The reference, solved and made danceable, or as it was kept."""
+    def motion(self, controller: str, kept: Path | None, progress: Progress) -> Motion:
+        """The reference, solved or as it was kept."""
         from enpointe.motion.npz import load_motion, save_motion
 
         if kept is not None and kept.exists():
             return load_motion(kept, model_of(self.score, self.dancer))
-        motion = self._solved(progress)
+        motion = self._solved(controller, progress)
         if kept is not None:
             save_motion(motion, kept)
         return motion
 
-    def _solved(self, progress: Progress) -> Motion:
-        from enpointe.motion import Interpolation, find_effort, interpolate
-        from enpointe.motion.danceable import make_danceable
+    def _solved(self, controller: str, progress: Progress) -> Motion:
+        from enpointe.motion import Interpolation, find_effort
 
         quality, preset_tempo, _ = find_effort(self.effort)
         choreography = prepare(
@@ -262,15 +260,8 @@ class _Asked:
             dancer=self.dancer,
             progress=progress,
         )
-        composed = interpolate(
-            choreography,
-            quality,
-            Interpolation.EXPRESSIVE,
-            progress=lambda done, total: progress("movement", done, total),
-        )
-        return make_danceable(
-            composed, progress=lambda done, total: progress("weight", done, total)
-        ).motion
+        kind = Interpolation.EXPRESSIVE
+        return reference(choreography, quality, kind, controller, progress=progress)
 
 
 def _outcomes(

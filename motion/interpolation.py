@@ -9,13 +9,15 @@ from itertools import pairwise
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import convolve1d
+from scipy.signal.windows import parzen
 
 from enpointe.errors import MotionError
 from enpointe.models.keypose import KeyPose, KeyPoseSolver
 from enpointe.models.stances import StanceTracker
 from enpointe.models.style import Style
 from enpointe.models.target import pose_target
-from enpointe.motion.averaging import averaged_qpos
+from enpointe.motion.bearing import bearing_columns
 from enpointe.motion.effort import Effort, logistic
 from enpointe.motion.inbetween import Passage, solve_passage
 from enpointe.motion.kind import Interpolation
@@ -211,15 +213,13 @@ def _flown(station: Station) -> Callable[[float], Array] | None:
 
 def _round_corners(model: mujoco.MjModel, qpos: Array) -> Array:
     """Average over Parzen windows; quaternions nearly agree within one, so theirs is sound too."""
-    legs = np.zeros(model.nq, dtype=bool)
-    for j in range(model.njnt):
-        name = model.joint(j).name
-        width = 7 if name == "root" else 1
-        start = int(model.jnt_qposadr[j])
-        legs[start : start + width] = any(part in name for part in _LEG_JOINTS)
-    smooth = averaged_qpos(qpos, ROUNDING, RATE)
-    smooth[:, legs] = averaged_qpos(qpos, LEG_ROUNDING, RATE)[:, legs]
+    legs = bearing_columns(model)
+    smooth = _averaged(qpos, ROUNDING)
+    smooth[:, legs] = _averaged(qpos[:, legs], LEG_ROUNDING)
+    smooth[:, 3:7] /= np.linalg.norm(smooth[:, 3:7], axis=1, keepdims=True)
     return smooth
 
 
-_LEG_JOINTS = ("root", "hip", "knee", "ankle", "toe")
+def _averaged(values: Array, width: float) -> Array:
+    window = parzen(2 * int(width * RATE / 2) + 1, sym=True)
+    return np.asarray(convolve1d(values, window / window.sum(), axis=0, mode="nearest"))

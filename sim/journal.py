@@ -90,7 +90,7 @@ class Journal:
         if header.get("configuration") != configuration:
             raise EnpointeError(
                 f"{self._path} is of another sweep (score, effort, dancer, disturbances, seed or"
-                " version differ); choose another --out, or remove that file"
+                " enpointe differ); choose another --out, or remove that file"
             )
         if cut:
             write_text(self._path, whole + "\n")

@@ -18,6 +18,7 @@ from itertools import islice
 from typing import Any
 
 from enpointe.errors import EnpointeError
+from enpointe.sim.fingerprint import code_digest
 from enpointe.sim.trial import Outcome, Trial
 
 __all__ = ["on_cluster", "on_processes"]
@@ -101,6 +102,11 @@ def on_cluster(trial: Trial, runs: Iterable[int], address: str) -> Generator[Out
         if not client.nthreads():
             raise EnpointeError(f"the Dask scheduler at {address} has no workers; start some")
         with _cluster_faults(address):
+            if set(client.run(code_digest).values()) != {code_digest()}:
+                raise EnpointeError(
+                    f"the workers of {address} have another enpointe, MuJoCo or numpy than this"
+                    " machine; install the same everywhere"
+                )
             sent = client.scatter(trial, broadcast=True)
         futures = client.map(_dance_sent, list(runs), trial=sent, pure=False)
         try:

@@ -10,10 +10,9 @@ from enpointe.controllers.wholebody.reference import Reference
 __all__ = ["ContactSchedule", "FootShift"]
 
 Array = NDArray[np.float64]
-NEAR = 0.006
-"""A sole closer to the floor than this, m, is on it: contact gives way by less than 1 mm, and a
-foot that rolls shows its next sole in time."""
-PLANTED_SPEED = 0.05
+NEAR = 0.003
+"""A sole closer to the floor than this, m, is on it: contact gives way by less than 1 mm."""
+PLANTED_SPEED = 0.1
 """A sole that the reference moves faster than this, m/s, slides or swings and bears nothing."""
 
 

@@ -76,10 +76,10 @@ class CentreOfMass:
     """
 
     name: ClassVar[str] = "centre of mass"
-    weight: float = 10.0
+    weight: float = 30.0
     capture_gain: float = 5.0
-    stiffness: float = 100.0
-    damping: float = 20.0
+    stiffness: float = 300.0
+    damping: float = 35.0
 
     def rows(self, instant: Instant, goal: Goal) -> Rows:
         if len(instant.edges) == 0:
@@ -137,7 +137,7 @@ class Contact:
     """
 
     name: ClassVar[str] = "contact"
-    weight: float = 100.0
+    weight: float = 300.0
     damping: float = 30.0
 
     def rows(self, instant: Instant, goal: Goal) -> Rows:
@@ -167,8 +167,8 @@ class Orientation:
     name: ClassVar[str] = "orientation"
     weight: float = 2.0
     weight_aloft: float = 0.04
-    stiffness: float = 100.0
-    damping: float = 20.0
+    stiffness: float = 200.0
+    damping: float = 28.0
 
     def rows(self, instant: Instant, goal: Goal) -> Rows:
         matrix = np.zeros((3, instant.size))
@@ -193,8 +193,8 @@ class Posture:
 
     name: ClassVar[str] = "posture"
     weight: float = 0.2
-    stiffness: float = 100.0
-    damping: float = 20.0
+    stiffness: float = 400.0
+    damping: float = 40.0
 
     def rows(self, instant: Instant, goal: Goal) -> Rows:
         dofs = instant.actuated
@@ -221,9 +221,9 @@ class SwingFoot:
     """
 
     name: ClassVar[str] = "swing foot"
-    weight: float = 0.5
-    stiffness: float = 100.0
-    damping: float = 20.0
+    weight: float = 20.0
+    stiffness: float = 900.0
+    damping: float = 60.0
 
     def rows(self, instant: Instant, goal: Goal) -> Rows:
         away = instant.resting

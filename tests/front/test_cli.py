@@ -219,3 +219,12 @@ def test_the_program_refuses_as_the_function_does(tmp_path: Path) -> None:
     assert run.stderr.startswith("enpointe: bad.bmn:12:9: ")
     assert run.stderr.count("\n") == 1
     assert [p.name for p in tmp_path.iterdir()] == ["bad.bmn"]
+
+
+@pytest.mark.slow
+def test_a_position_is_held_by_its_name(home: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    arguments = ["perform", "pose first arabesque", "--controller", "wholebody", "--hold", "1"]
+    assert _run([*arguments, "--no-video", "--json", "--out", "held"]) == 0
+    figures = one_object(capfd.readouterr().out)
+    assert figures["completed"] is True
+    assert (home / "held" / "balance.csv").exists()

@@ -109,6 +109,7 @@ def test_a_dance_can_be_saved_and_read_again(tmp_path: Path) -> None:
     files = dance().save(tmp_path / "new folder")
     model = dance().motion.model
     assert sorted(p.name for p in (tmp_path / "new folder").iterdir()) == [
+        "balance.csv",
         "motion.npz",
         "recording.npz",
     ]
@@ -348,3 +349,30 @@ def test_two_frames_at_the_same_pose_are_a_dance() -> None:
     assert json.dumps(summary)
     moved = replace(dance("kinematic"), effort_name="x")
     assert moved.summary()["effort"]["name"] == "x"  # type: ignore[index]
+
+
+ON_POINTE = written_score(
+    "left leg: straight, pointe; right leg: raised devant 90; arms: à la seconde"
+)
+
+
+def test_a_pose_is_held_on_pointe_in_pointe_shoes() -> None:
+    held = enpointe.perform(parse_score(ON_POINTE), controller="wholebody", hold=0.4)
+    summary = held.summary()
+    assert summary["completed"] is True
+    assert summary["qp_failures"] == 0
+    assert summary["root_force_max"] == 0.0
+    assert summary["duration"] == pytest.approx(0.5 + 0.4, abs=0.01)
+    names = [held.motion.model.geom(g).name for g in range(held.motion.model.ngeom)]
+    assert "left_platform_upper_inner" in names
+    assert json.dumps(summary)
+
+
+def test_a_hold_lengthens_the_end_and_one_frame_alone_is_no_dance() -> None:
+    moved = enpointe.perform(parse_score(SHORT), controller="kinematic", hold=2.5)
+    longer = moved.motion.duration - dance("kinematic").motion.duration
+    assert longer == pytest.approx(60 / 90 - 60 / 80 + 1.5, abs=0.01)
+    with pytest.raises(MotionError, match="one frame"):
+        enpointe.perform(parse_score(ON_POINTE), controller="wholebody")
+    with pytest.raises(EnpointeError, match="a pose is held for up to 600 s"):
+        enpointe.perform(parse_score(SHORT), hold=-1.0)
