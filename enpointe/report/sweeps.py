@@ -18,18 +18,19 @@ __all__ = ["sweep_page", "write_sweep"]
 LISTED_MAX = 100
 """Failures in the table; all are in the file of the runs."""
 _COLUMNS = (
-    ("mass_error", "heavier, %", 100.0),
-    ("com_forward", "CoM forward, mm", 1000.0),
-    ("com_left", "CoM left, mm", 1000.0),
-    ("friction", "friction", 1.0),
-    ("noise", "noise", 1.0),
-    ("delay", "delay, ms", 1000.0),
-    ("push", "push, N s", 1.0),
-    ("push_at", "at, s", 1.0),
-    ("push_direction", "towards, ° left of forward", 57.29577951308232),
-    ("rate", "rate, Hz", 1.0),
-    ("softness", "softness, ms", 1000.0),
+    ("mass_error", "heavier, %", 100.0, 1),
+    ("com_forward", "CoM forward, mm", 1000.0, 1),
+    ("com_left", "left, mm", 1000.0, 1),
+    ("friction", "friction", 1.0, 2),
+    ("noise", "noise", 1.0, 2),
+    ("delay", "delay, ms", 1000.0, 1),
+    ("push", "push, N s", 1.0, 1),
+    ("push_at", "pushed at, s", 1.0, 2),
+    ("push_direction", "towards, °", 57.29577951308232, 0),
+    ("rate", "rate, Hz", 1.0, 0),
+    ("softness", "softness, ms", 1000.0, 1),
 )
+"""Factor, its head, what its SI values are multiplied by, and decimals."""
 
 
 def write_sweep(sweep: Sweep, out: Path, factors: Sequence[str] | None = None) -> dict[str, Path]:
@@ -74,7 +75,7 @@ def sweep_page(sweep: Sweep, mapped: Sequence[str]) -> Page:
         blocks.append(Chart(heat_map_svg(sweep.outcomes, mapped, "map"), caption))
     sections = [Section("map", "Where she falls", tuple(blocks))]
     if fallen:
-        sections.append(Section("failures", "Runs not completed", (_failures(fallen),)))
+        sections.append(Section("failures", "Runs not completed", (_failures(sweep.outcomes),)))
     facts = (
         ("controller", sweep.controller),
         ("dance", f"{sweep.duration:.1f} s"),
@@ -85,25 +86,28 @@ def sweep_page(sweep: Sweep, mapped: Sequence[str]) -> Page:
     return Page(sweep.title, verdict, not fallen, facts, None, tuple(sections), footer)
 
 
-def _failures(fallen: Sequence[Outcome]) -> Table:
-    drawn = [c for c in _COLUMNS if any(o.factors.get(c[0]) is not None for o in fallen)]
+def _failures(outcomes: Sequence[Outcome]) -> Table:
+    """The runs that failed, with the factors that were not the same in all runs."""
+    fallen = [o for o in outcomes if not o.completed]
+    varied = [c for c in _COLUMNS if len({o.factors.get(c[0]) for o in outcomes}) > 1]
     rows = tuple(
         Row(
-            f"run {outcome.run}",
+            str(outcome.run),
             (
-                _cell(outcome.fell_at, 1.0),
-                *(_cell(outcome.factors.get(name), factor) for name, _, factor in drawn),
+                _cell(outcome.fell_at, 1.0, 2),
+                *(_cell(outcome.factors.get(name), scale, n) for name, _, scale, n in varied),
                 Cell(outcome.fault or "was falling at the end"),
             ),
         )
         for outcome in fallen[:LISTED_MAX]
     )
     more = f" (the first {LISTED_MAX})" if len(fallen) > LISTED_MAX else ""
-    heads = ("Run", "fell at, s", *(head for _, head, _ in drawn), "ended because she")
-    return Table(f"What was drawn for each{more}", heads, rows)
+    heads = ("Run", "fell at, s", *(head for _, head, _, _ in varied), "how it ended")
+    note = "forward is to the audience, and directions count to her left from there"
+    return Table(f"What was drawn for each{more}; {note}", heads, rows)
 
 
-def _cell(value: float | None, factor: float) -> Cell:
+def _cell(value: float | None, scale: float, places: int) -> Cell:
     if value is None:
         return Cell(DASH)
-    return Cell(f"{factor * value:.3g}".replace("-", "−"), value)
+    return Cell(f"{scale * value:.{places}f}".replace("-", "−"), value)

@@ -138,9 +138,9 @@ def test_every_command_exists(page: str, words: list[str]) -> None:
         from enpointe.motion import find_effort
 
         find_effort(given["--effort"])
-    named = bool(rest) and not rest[0].endswith(".bmn") and "--hold" not in rest
-    if verb in ("perform", "compare", "sweep") and named:
-        assert rest[0] in enpointe.notation.shipped_scores()
+    if verb in ("perform", "compare", "sweep") and rest and not rest[0].endswith(".bmn"):
+        poses = enpointe.notation.names() if "--hold" in rest else ()
+        assert rest[0] in (*enpointe.notation.shipped_scores(), *poses)
 
 
 def runs(pages: dict[Path, list[Block]]) -> Iterator[Any]:
