@@ -150,30 +150,36 @@ class _Body:
             share: (S,), how much each sole is held to its place, 0 to 1.
         """
         qpos, away = guess.copy(), np.zeros(self.model.nv)
+        low, high = self.model.jnt_range[1:].T
+        sunk = np.zeros(len(share), dtype=bool)
         for _ in range(ITERATIONS):
             self._place(qpos)
-            rows, errors = self._rows(com, places, share)
+            # Once too low, always held up: else every other step would let it sink again.
+            sunk |= self._points()[:, 2] < CLEARANCE * (1.0 - share)
+            rows, errors = self._rows(com, places, share, sunk)
             mujoco.mj_differentiatePos(self.model, away, 1.0, qpos, asked)
             matrix = rows.T @ rows + np.diag(self._cost**2)
             change = np.linalg.solve(matrix, rows.T @ errors + self._cost**2 * away)
             mujoco.mj_integratePos(self.model, qpos, change, 1.0)
-            low, high = self.model.jnt_range[1:].T
             qpos[7:] = np.clip(qpos[7:], low, high)
         return qpos
 
-    def _rows(self, com: Array, places: Array, share: Array) -> tuple[Array, Array]:
+    def _points(self) -> Array:
+        points = self.data.geom_xpos[self._soles].copy()
+        points[:, 2] -= self._radius
+        return points
+
+    def _rows(
+        self, com: Array, places: Array, share: Array, sunk: NDArray[np.bool_]
+    ) -> tuple[Array, Array]:
         model, data = self.model, self.data
-        points = data.geom_xpos[self._soles] - np.array([0, 0, 1]) * self._radius[:, None]
-        jacobian = np.zeros((3, model.nv))
+        points, jacobian = self._points(), np.zeros((3, model.nv))
         rows, errors = [], []
-        for point, geom, place, held in zip(points, self._soles, places, share, strict=True):
-            low = point[2] < CLEARANCE * (1.0 - held)
-            if held < 1e-3 and not low:
-                continue
-            mujoco.mj_jac(model, data, jacobian, None, point, model.geom_bodyid[geom])
-            error = np.array([*(place - point[:2]), CLEARANCE * (1.0 - held) - point[2]])
-            lift = max(held, min((CLEARANCE - point[2]) / CLEARANCE, 1.0)) if low else held
-            gain = _CONTACT * np.array([held, held, lift])
+        for s in np.flatnonzero(sunk | (share > 1e-3)):
+            point, held = points[s], share[s]
+            mujoco.mj_jac(model, data, jacobian, None, point, model.geom_bodyid[self._soles[s]])
+            error = np.array([*(places[s] - point[:2]), CLEARANCE * (1.0 - held) - point[2]])
+            gain = _CONTACT * np.array([held, held, 1.0 if sunk[s] else held])
             rows.append(gain[:, None] * jacobian)
             errors.append(gain * error)
         mujoco.mj_jacSubtreeCom(model, data, jacobian, 0)

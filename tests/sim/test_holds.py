@@ -5,12 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import enpointe
 from enpointe.controllers import PD, Recording, WholeBody, perform
 from enpointe.controllers.plant import Plant
 from enpointe.controllers.wholebody import DEFAULT_TASKS
 from enpointe.controllers.wholebody.tasks import CentreOfMass
 from enpointe.models.foot_positions import support_hull
 from enpointe.motion import Motion
+from enpointe.notation import parse_score
 from enpointe.sim.balance import room
 from enpointe.sim.body import SimulatedBody
 from enpointe.sim.measures import measure
@@ -24,6 +26,7 @@ from ..controllers.wholebody_cases import (
     RETIRE_DEMI,
     held,
 )
+from ..motion.dancing import written_score
 
 
 def danced(motion: Motion, controller: WholeBody | PD | None = None) -> Recording:
@@ -81,6 +84,34 @@ def test_a_push_to_the_left_is_taken_up_to_what_the_foot_can_take(
     figures = measure(perform(motion, WholeBody(motion), body))
     assert (figures.fell_at is None) == stands
     assert figures.root_force_max == pytest.approx(share * most / 0.1)
+
+
+STEPS = {
+    "retiré": (
+        "feet: fifth right front; arms: fifth en bas",
+        "left leg: straight; right leg: retiré devant; arms: fifth en avant",
+        "feet: fifth right front; arms: fifth en bas",
+    ),
+    "plié-relevé": (
+        "feet: first; arms: fifth en bas",
+        "feet: first, demi-plié",
+        "feet: first, demi-pointe",
+        "feet: first",
+    ),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("step", STEPS)
+def test_a_step_is_danced_through(step: str) -> None:
+    score = parse_score(written_score(*STEPS[step], tempo=30 if step == "retiré" else 60))
+    dance = enpointe.perform(score, controller="wholebody")
+    figures = dance.summary()
+    assert figures["completed"]
+    assert figures["qp_failures"] == 0
+    assert figures["other_contact_max"] == 0.0
+    assert figures["root_force_max"] == 0.0
+    assert figures["tracking_rms_deg"] < 2.0
 
 
 @pytest.mark.parametrize("duration", [0.0, 0.1, 0.4])
