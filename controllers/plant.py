@@ -9,6 +9,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from enpointe.models.soles import sole_geoms
+
 __all__ = ["Plant"]
 
 Array = NDArray[np.float64]
@@ -51,18 +53,7 @@ class Plant:
     @cached_property
     def sole_geoms(self) -> NDArray[np.int64]:
         """Geoms that meet the floor and nothing else, (S,)."""
-        model = self.model
-        planes = np.flatnonzero(model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE)
-        spheres = np.flatnonzero(model.geom_type == mujoco.mjtGeom.mjGEOM_SPHERE)
-        floor_class = int(model.geom_contype[planes[0]]) if len(planes) else 0
-        return np.array(
-            [
-                g
-                for g in spheres
-                if model.geom_contype[g] and int(model.geom_conaffinity[g]) == floor_class
-            ],
-            dtype=np.int64,
-        )
+        return sole_geoms(self.model)
 
     def soles_on_floor(self) -> NDArray[np.int64]:
         """The sole geoms that touch the floor in this pose."""

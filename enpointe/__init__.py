@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING
 from enpointe.lazy import lazy
 
 if TYPE_CHECKING:
+    from enpointe.checking import Check as Check
+    from enpointe.checking import check as check
     from enpointe.comparing import Comparison as Comparison
     from enpointe.comparing import compare as compare
     from enpointe.doctor import diagnose as diagnose
@@ -27,15 +29,19 @@ if TYPE_CHECKING:
     from enpointe.posing import Poses as Poses
     from enpointe.posing import pose as pose
     from enpointe.report import write_report as write_report
+    from enpointe.sweeping import Sweep as Sweep
+    from enpointe.sweeping import sweep as sweep
 
 __version__ = "0.1.0"
 
 _HOMES = {
+    "Check": "enpointe.checking",
     "Comparison": "enpointe.comparing",
     "EnpointeError": "enpointe.errors",
     "Notation": "enpointe.notating",
     "Performance": "enpointe.performing",
     "Poses": "enpointe.posing",
+    "check": "enpointe.checking",
     "compare": "enpointe.comparing",
     "diagnose": "enpointe.doctor",
     "load_score": "enpointe.notation",
@@ -43,16 +49,21 @@ _HOMES = {
     "perform": "enpointe.performing",
     "pose": "enpointe.posing",
     "recognise": "enpointe.notating",
+    "Sweep": "enpointe.sweeping",
+    "sweep": "enpointe.sweeping",
     "write_report": "enpointe.report",
 }
 
 __all__ = [
+    "Check",
     "Comparison",
     "EnpointeError",
     "Notation",
     "Performance",
     "Poses",
+    "Sweep",
     "__version__",
+    "check",
     "compare",
     "diagnose",
     "load_score",
@@ -60,6 +71,7 @@ __all__ = [
     "perform",
     "pose",
     "recognise",
+    "sweep",
     "write_report",
 ]
 __getattr__, __dir__ = lazy(__name__, _HOMES)

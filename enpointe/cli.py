@@ -11,7 +11,7 @@ from typing import Annotated
 import typer
 
 import enpointe
-from enpointe.console import Console
+from enpointe.console import Console, rows
 from enpointe.errors import EnpointeError
 from enpointe.options import (
     DancerOptions,
@@ -20,6 +20,8 @@ from enpointe.options import (
     OutputOptions,
     Quiet,
     Score,
+    Seed,
+    SeededOutputOptions,
     StyledDancerOptions,
     Tempo,
     Video,
@@ -199,6 +201,106 @@ def notate(
             console.print(f"beat {each.frame.beat}: {each.recognition.name}")
         console.print(f"score: {files['score']}")
     return DONE
+
+
+@app.command()
+@unbundled
+def check(
+    source: Annotated[
+        str,
+        typer.Argument(
+            help="A motion or a recording (.npz, as perform writes them), a shipped score's name,"
+            " or a .bmn file."
+        ),
+    ],
+    *,
+    effort: Effort = None,
+    tempo: Tempo = None,
+    dancer: StyledDancerOptions,
+    json: Json = False,
+    quiet: Quiet = False,
+    seed: Seed = 0,
+) -> int:
+    """Look at balance and foot contact of a movement, without dancing it."""
+    console = Console(json=json, quiet=quiet)
+    with console.progress() as progress:
+        found = enpointe.check(
+            source,
+            effort=effort,
+            tempo=tempo,
+            style=dancer.style(),
+            dancer=dancer.anthropometry(),
+            progress=progress,
+        )
+    if json:
+        console.print_json(found.summary())
+    else:
+        console.print(rows(found.lines()))
+    return NO if found.faults else DONE
+
+
+@app.command()
+@unbundled
+def sweep(
+    source: Score,
+    *,
+    runs: Annotated[int, typer.Option(help="How many runs.")] = 40,
+    disturb: Annotated[
+        str | None,
+        typer.Option(
+            help="What is disturbed: mass, com, friction, noise, delay, push, rate, softness; each"
+            " with an amount or a range if it is to be unusual (push=8,friction=0.4:1); all; none."
+            " The first six if left out."
+        ),
+    ] = None,
+    controller: Annotated[
+        ControllerName, typer.Option(help="wholebody or pd.")
+    ] = ControllerName.WHOLEBODY,
+    effort: Effort = None,
+    tempo: Tempo = None,
+    processes: Annotated[
+        int | None, typer.Option(help="Processes on this machine; one a processor if left out.")
+    ] = None,
+    cluster: Annotated[
+        str | None,
+        typer.Option(metavar="ADDRESS", help="Of a Dask scheduler, instead of processes here."),
+    ] = None,
+    factors: Annotated[
+        str | None,
+        typer.Option("--map", help="Two factors for the heat map, as in push_at,friction."),
+    ] = None,
+    at_least: Annotated[
+        float, typer.Option(help="Share of runs to be completed for the answer to be yes.")
+    ] = 0.95,
+    dancer: StyledDancerOptions,
+    output: SeededOutputOptions,
+) -> int:
+    """Dance a score many times, disturbed in as many ways; started again, it goes on."""
+    from enpointe.report.heatmap import find_factors
+    from enpointe.report.sweeps import write_sweep
+
+    console = output.console()
+    mapped = None if factors is None else find_factors(factors)
+    folder = output.folder(f"{Path(source).stem}-swept")
+    with console.progress() as progress:
+        swept = enpointe.sweep(
+            source,
+            runs=runs,
+            seed=output.seed,
+            controller=controller.value,
+            disturb=disturb,
+            effort=effort,
+            tempo=tempo,
+            processes=processes,
+            cluster=cluster,
+            style=dancer.style(),
+            dancer=dancer.anthropometry(),
+            out=folder,
+            progress=progress,
+        )
+        files = {**write_sweep(swept, folder, mapped), **swept.save(folder)}
+    console.show(swept.summary(), files, folder)
+    return DONE if swept.completed_fraction >= at_least else NO
 
 
 @app.command()

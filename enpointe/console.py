@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json as jsonlib
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ from rich.table import Table
 
 from enpointe.performing import Progress as Report
 
-__all__ = ["Console"]
+__all__ = ["Console", "rows"]
 
 
 class Console:
@@ -100,10 +100,15 @@ def _finite(value: object) -> object:
 
 
 def _table(figures: Mapping[str, object]) -> Table:
+    return rows(_flat(figures))
+
+
+def rows(pairs: Iterable[tuple[str, str]]) -> Table:
+    """A plain table of what is measured and its value."""
     table = Table(show_header=False, box=None, pad_edge=False)
     table.add_column(style="dim")
     table.add_column()
-    for name, value in _flat(figures):
+    for name, value in pairs:
         table.add_row(name, value)
     return table
 
@@ -118,6 +123,9 @@ def _flat(figures: Mapping[str, object], prefix: str = "") -> Iterator[tuple[str
                 yield entry["name"], _verdict(entry)
             if len(value) == 1:
                 yield from ((rule["rule"], _measured(rule)) for rule in value[0]["rules"])
+        elif name == "failures" and isinstance(value, list):
+            fallen = [str(entry["run"]) for entry in value]
+            yield label, f"{len(fallen)}: runs {', '.join(fallen)}" if fallen else "none"
         elif isinstance(value, float):
             yield label, f"{value:.4g}"
         elif isinstance(value, list):

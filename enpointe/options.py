@@ -23,6 +23,8 @@ __all__ = [
     "OutputOptions",
     "Quiet",
     "Score",
+    "Seed",
+    "SeededOutputOptions",
     "StyledDancerOptions",
     "Tempo",
     "Video",
@@ -53,6 +55,7 @@ Tempo = Annotated[
 ]
 Video = Annotated[bool, typer.Option(help="Film the dance (the slowest part).")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
+Seed = Annotated[int, typer.Option(help="Seed of what is random; in this verb nothing is.")]
 Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing but errors.")]
 
 
@@ -100,7 +103,7 @@ class OutputOptions:
     ] = None
     json: Json = False
     quiet: Quiet = False
-    seed: Annotated[int, typer.Option(help="Seed of what is random; in this verb nothing is.")] = 0
+    seed: Seed = 0
 
     def console(self) -> Console:
         """Where the verb speaks."""
@@ -111,6 +114,13 @@ class OutputOptions:
         if self.out is not None:
             return self.out
         return Path(Path(source).stem.strip().replace(" ", "-") or "out")
+
+
+@dataclass(frozen=True)
+class SeededOutputOptions(OutputOptions):
+    """What is written where, of a verb that draws at random."""
+
+    seed: Annotated[int, typer.Option(help="Seed of all that is drawn.")] = 0
 
 
 def unbundled(verb: Callable[..., int]) -> Callable[..., int]:

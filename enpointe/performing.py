@@ -13,13 +13,25 @@ from enpointe.figures import PerformanceFigures, PhysicalFigures, RuleKeptFigure
 from enpointe.notation import FloorContact, Score, load_score
 
 if TYPE_CHECKING:
+    import mujoco
+
     from enpointe.controllers import Recording
     from enpointe.models import Anthropometry, KeyPose, Style
     from enpointe.motion import Choreography, Effort, Interpolation, Motion, RuleKept
     from enpointe.motion.wrist import LogisticFit
     from enpointe.sim.measures import Measures
 
-__all__ = ["CONTROLLERS", "Performance", "Progress", "dance", "perform", "prepare", "silent"]
+__all__ = [
+    "CONTROLLERS",
+    "Performance",
+    "Progress",
+    "dance",
+    "model_of",
+    "perform",
+    "prepare",
+    "reference",
+    "silent",
+]
 
 Progress = Callable[[str, float, float], None]
 """Called with what is being done, how much of it is done, and how much there is."""
@@ -194,6 +206,13 @@ def _on_pointe(score: Score) -> bool:
     )
 
 
+def model_of(score: Score, dancer: Anthropometry | None) -> mujoco.MjModel:
+    """The dancer in the shoes that a score needs; 1.68 m and 54 kg if None."""
+    from enpointe.models.dancer import dancer_model
+
+    return dancer_model(dancer, pointe_shoes=_on_pointe(score))
+
+
 def check_reach(score: Score, dancer: Anthropometry | None, style: Style | None) -> None:
     """Refuse signs that this dancer's limbs do not reach, before the solver is loaded.
 
@@ -235,12 +254,12 @@ def prepare(
     score = source if isinstance(source, Score) else load_score(source)
     score.duration(tempo)
     check_reach(score, dancer, style)
-    from enpointe.models import KeyPoseSolver, dancer_model
+    from enpointe.models import KeyPoseSolver
     from enpointe.motion import solve_key_poses
 
     return solve_key_poses(
         score,
-        KeyPoseSolver(dancer_model(dancer, pointe_shoes=_on_pointe(score))),
+        KeyPoseSolver(model_of(score, dancer)),
         style=style,
         tempo=tempo,
         still=still,
@@ -327,6 +346,23 @@ def has_qualities(score: Score) -> bool:
 LONGEST_HOLD = 600.0
 
 
+def reference(motion: Motion, controller: str, progress: Progress = silent) -> Motion:
+    """A movement as a controller is asked for it.
+
+    The whole-body controller gets one that can be danced, with its weight over the feet that stand.
+    """
+    if controller != "wholebody":
+        return motion
+    from enpointe.motion.contact_schedule import contact_schedule
+    from enpointe.motion.danceable import make_danceable
+
+    if not contact_schedule(motion).steps:
+        return motion
+    return make_danceable(
+        motion, progress=lambda done, total: progress("weight", done, total)
+    ).motion
+
+
 def dance(
     choreography: Choreography,
     effort: Effort,
@@ -371,11 +407,7 @@ def dance(
     from enpointe.sim.body import SimulatedBody
     from enpointe.sim.measures import measure
 
-    if controller == "wholebody":
-        from enpointe.motion.contact_plan import steps
-        from enpointe.motion.danceable import danceable
-
-        motion = danceable(motion).motion if steps(motion) else motion
+    motion = reference(motion, controller, progress)
     planned = FeedForward.along(motion)
     driver = WholeBody(motion) if controller == "wholebody" else PD(motion, feedforward=planned)
     recording = run(

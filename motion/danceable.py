@@ -1,241 +1,244 @@
-"""From a motion that can be seen to one that can be danced: standing feet, carried weight.
+"""From a motion as composed to one that a body can dance: the same movement over moved weight.
 
-The kinematic motion says what the limbs do, which soles are on the floor, and where the weight
-should be. The corners of its legs are rounded to what muscles can do, the way of the weight is
-planned so that the floor can carry it (`plan_weight`), and the whole body is then brought onto
-both, sample by sample: soles on their places, centre of mass on its way, everything else as near as
-may be. Key poses keep their moments.
+The contacts and the centre of mass are planned (`contact_schedule`, `plan_weight`); then every
+sample is posed again by differential inverse kinematics (mink), from the pose as composed:
+
+- soles near the floor keep their places in the world, so that feet neither skate nor sink;
+- the centre of mass follows the plan;
+- trunk and pelvis keep their directions, and joints their angles, as far as that allows.
+
+Beats are kept: no sample is moved in time. Where the floor cannot give what a motion needs,
+`WeightPlan.outside` says when and by how much.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
+import mink
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
-from scipy.ndimage import convolve1d
-from scipy.signal.windows import parzen
+from scipy.ndimage import distance_transform_edt, maximum_filter1d
 
-from enpointe.motion.bearing import bearing_columns
-from enpointe.motion.contact_plan import ContactPlan, plan_contacts
+from enpointe.models.soles import sole_points
+from enpointe.motion.averaging import averaged, averaged_qpos
+from enpointe.motion.contact_schedule import ContactSchedule, contact_schedule
 from enpointe.motion.motion import Motion
-from enpointe.motion.weight_plan import WeightPlan, plan_height, plan_weight
+from enpointe.motion.weight_plan import WeightPlan, plan_weight
+from enpointe.notation import Side
 
-__all__ = ["Danceable", "danceable"]
+__all__ = ["Danceable", "make_danceable"]
 
 Array = NDArray[np.float64]
-RATE = 100.0
-"""Samples a second at which the body is solved; a spline joins them."""
-ROUNDING = 0.15
-"""Width of the window that rounds legs and root, s."""
-SOFTENING = 0.12
-"""s over which a foot gives itself to the floor and takes itself away."""
-MOMENTUM = 0.3
-"""Width of the window that angular momentum is averaged over before weight is planned for it, s."""
-SETTLING = (0.1, 0.05, 0.03)
-"""Widths of the windows that the body's way to its contacts is averaged over, s, one after the
-other: an average leaves the floor a little, and is brought back to it."""
-CLEARANCE = 0.012
-"""Air under a foot that slides or passes, m: it must not take weight by accident."""
-ITERATIONS = 4
-_CONTACT, _WEIGHT, _HEIGHT, _TRUNK, _POSTURE = 300.0, 100.0, 30.0, 3.0, 1.0
-_STEADY = 3.0
-"""How much dearer a change of the arms, neck and waist is than one of the legs."""
+
+_DT = 1.0
+"""Nominal step of the differential IK: with unit gain a step closes the whole linear error."""
+_STEPS = 2
+"""Steps a sample: neighbours are so near that two close the error."""
+_GROUND = 0.03
+"""m: at this height above the floor a sole holds to its place in the world half as much."""
+_SOLE, _WEIGHT, _TRUNK, _PELVIS = 40.0, 10.0, 1.0, 0.6
+"""Costs of places (1/m) and directions (1/rad)."""
+_HEIGHTS = (1.5, 3.0)
+"""Costs of the height (1/m), round by round: straight legs reach no higher than they are long, so
+that it is asked for gently first, and then planned again from what was reached."""
+_POSTURE, _BEARING_LEG = 0.3, 0.05
+"""Costs of joint angles (1/rad): of what moves freely, and of a leg that stands, whose hip and
+ankle must give way for the weight to move."""
+_BRUSH, _LIFTING = 0.006, 0.1
+"""m and s: a foot that slides without weight is carried so high over the floor, and takes so long
+to get there; a sole that drags is pushed off its way by friction that nobody planned."""
+_MUSCLE = 0.2
+"""s: the corners at key poses are rounded over this window, wider than the movement's own since
+legs throw more weight about than arms do; the feet that it moves are put back."""
+_KINK = 0.06
+"""s: what is left of kinks where soles come and go."""
+_STRAIGHT = 0.3
+"""rad: a standing knee bent this much gives way too; one that is straight stays straight."""
 
 
 @dataclass(frozen=True)
 class Danceable:
-    """A motion that a body with weight can follow.
+    """A motion that can be danced, and what it was made with.
 
     Attributes:
-        motion: The motion.
-        contacts: The soles on the floor at the same times.
-        weight: The planned way of the weight, at `RATE`.
+        motion: The same samples in time, posed again.
+        contacts: Its planned contacts.
+        weight: Its planned centre of mass.
     """
 
     motion: Motion
-    contacts: ContactPlan
+    contacts: ContactSchedule
     weight: WeightPlan
 
 
-def danceable(motion: Motion) -> Danceable:
-    """Make a motion danceable.
+def make_danceable(
+    motion: Motion, *, progress: Callable[[int, int], None] | None = None
+) -> Danceable:
+    """Make a motion that gravity and the floor allow.
 
     Args:
-        motion: Evenly sampled, with its feet on the floor where they stand.
+        motion: As composed.
+        progress: Called with (done, all) now and then.
     """
-    model = motion.model
-    contacts = plan_contacts(motion)
-    every = max(round(1.0 / (RATE * float(motion.time[1] - motion.time[0]))), 1)
-    chosen = np.arange(0, len(motion.time), every)
-    if chosen[-1] != len(motion.time) - 1:
-        chosen = np.append(chosen, len(motion.time) - 1)
-    time = motion.time[chosen]
-    rounded = _rounded(motion, ROUNDING)[chosen]
-    step = float(time[1] - time[0])
-    body = _Body(model, contacts.soles)
-    com, momentum = body.movement(rounded, step)
-    supports = [contacts.support(int(k)) for k in chosen]
-    com[:, 2] = plan_height(time, com[:, 2], np.asarray(contacts.planted[chosen].any(axis=1)))
-    # What is quicker than this the trunk and arms take up by themselves.
-    slow = convolve1d(momentum, _window(time, MOMENTUM), axis=0, mode="nearest")
-    rate = np.gradient(slow, step, axis=0)
-    weight = plan_weight(time, com, rate, supports, float(model.body_mass.sum()))
-    share = _softened(contacts.planted, motion.time)[chosen]
-    places = contacts.places[chosen]
-    asked = rounded
-    for width in SETTLING:
-        solved = _brought(body, asked, weight.com, com[:, 2], places, share)
-        asked = _settled(model, asked, solved, _window(time, width))
-    path = CubicSpline(time, asked)(motion.time)
-    for row in path:
-        mujoco.mj_normalizeQuat(model, row)
-    danced = Motion.from_qpos(
-        model, motion.time, path, events=motion.events, name=f"{motion.name}, danceable"
+    contacts = contact_schedule(motion)
+    rate = 1.0 / float(np.median(np.diff(motion.time)))
+    soft = Motion.from_qpos(
+        motion.model, motion.time, averaged_qpos(motion.qpos, _MUSCLE, rate), name=motion.name
     )
-    return Danceable(danced, contacts, weight)
+    reached: Motion | None = None
+    for height_cost in _HEIGHTS:
+        weight = plan_weight(soft, contacts, reached)
+        posed = _Poser(soft, contacts, weight, height_cost).pose_all(progress)
+        reached = Motion.from_qpos(
+            motion.model,
+            motion.time,
+            averaged_qpos(posed, _KINK, rate),
+            events=motion.events,
+            name=motion.name,
+        )
+    assert reached is not None
+    return Danceable(reached, contacts, weight)
 
 
-def _brought(
-    body: _Body, asked: Array, com: Array, height: Array, places: Array, share: Array
-) -> Array:
-    """Every sample of `asked` (N, nq) brought onto its contacts and the way of the weight."""
-    qpos, guess = np.empty_like(asked), asked[0]
-    for i in range(len(asked)):
-        wanted = np.array([com[i, 0], com[i, 1], height[i]])
-        qpos[i] = body.brought(guess, asked[i], wanted, places[i], share[i])
-        guess = _carried(body.model, asked[i], qpos[i], asked[min(i + 1, len(asked) - 1)])
-    return qpos
+class _Poser:
+    """Every sample of a motion posed again over the planned weight."""
 
+    def __init__(
+        self,
+        motion: Motion,
+        contacts: ContactSchedule,
+        weight: WeightPlan,
+        height_cost: float,
+    ) -> None:
+        self._motion, self._contacts, self._weight = motion, contacts, weight
+        model = motion.model
+        self._configuration = mink.Configuration(model, q=motion.qpos[0])
+        self._data = mujoco.MjData(model)
+        names = [model.geom(int(g)).name for g in contacts.soles]
+        self._soles = [
+            mink.FrameTask(name, "geom", position_cost=_SOLE, orientation_cost=0.0)
+            for name in names
+        ]
+        self._com = mink.ComTask(cost=[_WEIGHT, _WEIGHT, height_cost])
+        self._trunk = mink.FrameTask("torso", "body", position_cost=0.0, orientation_cost=_TRUNK)
+        self._pelvis = mink.FrameTask("pelvis", "body", position_cost=0.0, orientation_cost=_PELVIS)
+        self._posture = mink.PostureTask(model, cost=np.full(model.nv, _POSTURE))
+        self._tasks = [*self._soles, self._com, self._trunk, self._pelvis, self._posture]
+        self._limits = [mink.ConfigurationLimit(model, gain=1.0)]
+        self._legs = _legs(model, contacts.soles)
+        self._freedom = _freedom(contacts)
+        feet = [leg.soles for leg in self._legs]
+        self._lift = _lift(self._heights(), self._freedom, feet, contacts.time)
 
-class _Body:
-    """Brings one model onto wanted places by damped Gauss-Newton steps in its tangent space."""
+    def _heights(self) -> Array:
+        """Heights of the soles as the motion has them, (T, S), m."""
+        model, data, soles = self._motion.model, self._data, self._contacts.soles
+        heights = np.empty(self._contacts.bears.shape)
+        for row, qpos in zip(heights, self._motion.qpos, strict=True):
+            data.qpos[:] = qpos
+            mujoco.mj_kinematics(model, data)
+            row[:] = sole_points(model, data, soles)[:, 2]
+        return heights
 
-    def __init__(self, model: mujoco.MjModel, soles: NDArray[np.int64]) -> None:
-        self.model, self.data = model, mujoco.MjData(model)
-        self._soles = soles
-        self._radius = model.geom_size[soles, 0]
-        self._cost = np.full(model.nv, _POSTURE)
-        self._cost[:3] = 0.02
-        self._cost[3:6] = _TRUNK
-        for j in range(1, model.njnt):
-            if model.jnt_qposadr[j] not in bearing_columns(model):
-                self._cost[model.jnt_dofadr[j]] = _STEADY
-        self._torso = model.body("torso").id
-
-    def movement(self, qpos: Array, step: float) -> tuple[Array, Array]:
-        """Centre of mass and angular momentum about it, (N, 3) each."""
-        com, momentum = np.empty((2, len(qpos), 3))
-        velocity = np.zeros(self.model.nv)
-        for i in range(len(qpos)):
-            a, b = max(i - 1, 0), min(i + 1, len(qpos) - 1)
-            mujoco.mj_differentiatePos(self.model, velocity, (b - a) * step, qpos[a], qpos[b])
-            self._place(qpos[i])
-            self.data.qvel[:] = velocity
-            mujoco.mj_comVel(self.model, self.data)
-            mujoco.mj_subtreeVel(self.model, self.data)
-            com[i], momentum[i] = self.data.subtree_com[0], self.data.subtree_angmom[0]
-        return com, momentum
-
-    def brought(self, guess: Array, asked: Array, com: Array, places: Array, share: Array) -> Array:
-        """The configuration near `asked` with its weight at `com` and its soles on their places.
-
-        Args:
-            guess: (nq,), where to begin.
-            asked: (nq,).
-            com: (3,), m.
-            places: (S, 2), m.
-            share: (S,), how much each sole is held to its place, 0 to 1.
-        """
-        qpos, away = guess.copy(), np.zeros(self.model.nv)
-        low, high = self.model.jnt_range[1:].T
-        sunk = np.zeros(len(share), dtype=bool)
-        for _ in range(ITERATIONS):
-            self._place(qpos)
-            # Once too low, always held up: else every other step would let it sink again.
-            sunk |= self._points()[:, 2] < CLEARANCE * (1.0 - share)
-            rows, errors = self._rows(com, places, share, sunk)
-            mujoco.mj_differentiatePos(self.model, away, 1.0, qpos, asked)
-            matrix = rows.T @ rows + np.diag(self._cost**2)
-            change = np.linalg.solve(matrix, rows.T @ errors + self._cost**2 * away)
-            mujoco.mj_integratePos(self.model, qpos, change, 1.0)
-            qpos[7:] = np.clip(qpos[7:], low, high)
+    def pose_all(self, progress: Callable[[int, int], None] | None) -> Array:
+        model, motion = self._motion.model, self._motion
+        qpos = np.empty_like(motion.qpos)
+        moved = np.zeros(model.nv)
+        for i, asked in enumerate(motion.qpos):
+            start = asked.copy()
+            mujoco.mj_integratePos(model, start, moved, 1.0)
+            qpos[i] = self._pose(i, start)
+            mujoco.mj_differentiatePos(model, moved, 1.0, asked, qpos[i])
+            if progress is not None and i % 50 == 0:
+                progress(i, len(qpos))
         return qpos
 
-    def _points(self) -> Array:
-        points = np.array(self.data.geom_xpos[self._soles])
-        points[:, 2] -= self._radius
-        return points
+    def _pose(self, i: int, start: Array) -> Array:
+        self._ask(i)
+        self._configuration.update(start)
+        for _ in range(_STEPS):
+            step = mink.solve_ik(
+                self._configuration, self._tasks, _DT, "daqp", 1e-6, limits=self._limits
+            )
+            self._configuration.integrate_inplace(step, _DT)
+        return np.array(self._configuration.q)
 
-    def _rows(
-        self, com: Array, places: Array, share: Array, sunk: NDArray[np.bool_]
-    ) -> tuple[Array, Array]:
-        model, data = self.model, self.data
-        points, jacobian = self._points(), np.zeros((3, model.nv))
-        rows, errors = [], []
-        for s in np.flatnonzero(sunk | (share > 1e-3)):
-            point, held = points[s], share[s]
-            mujoco.mj_jac(model, data, jacobian, None, point, model.geom_bodyid[self._soles[s]])
-            error = np.array([*(places[s] - point[:2]), CLEARANCE * (1.0 - held) - point[2]])
-            gain = _CONTACT * np.array([held, held, 1.0 if sunk[s] else held])
-            rows.append(gain[:, None] * jacobian)
-            errors.append(gain * error)
-        mujoco.mj_jacSubtreeCom(model, data, jacobian, 0)
-        gain = np.array([_WEIGHT, _WEIGHT, _HEIGHT])
-        rows.append(gain[:, None] * jacobian)
-        errors.append(gain * (com - data.subtree_com[0]))
-        return np.vstack(rows), np.concatenate(errors)
+    def _ask(self, i: int) -> None:
+        model, data = self._motion.model, self._data
+        data.qpos[:] = self._motion.qpos[i]
+        mujoco.mj_kinematics(model, data)
+        radii = model.geom_size[self._contacts.soles, 0]
+        moving = sole_points(model, data, self._contacts.soles)
+        free = self._freedom[i][:, None]
+        points = free * moving + (1.0 - free) * self._contacts.points[i]
+        points[:, 2] += self._lift[i]
+        for task, point, radius in zip(self._soles, points, radii, strict=True):
+            task.set_position_cost(_SOLE / (1.0 + (point[2] / _GROUND) ** 2))
+            task.set_target(mink.SE3.from_translation(point + np.array([0.0, 0.0, radius])))
+        self._com.set_target(self._weight.at(float(self._motion.time[i]))[0])
+        for task, body in ((self._trunk, "torso"), (self._pelvis, "pelvis")):
+            task.set_target(mink.SE3.from_rotation(mink.SO3(data.body(body).xquat)))
+        self._posture.cost = self._posture_cost(i)
+        self._posture.set_target(self._motion.qpos[i])
 
-    def _place(self, qpos: Array) -> None:
-        self.data.qpos[:] = qpos
-        mujoco.mj_kinematics(self.model, self.data)
-        mujoco.mj_comPos(self.model, self.data)
-
-
-def _carried(model: mujoco.MjModel, here: Array, solved: Array, ahead: Array) -> Array:
-    """`solved` moved on by what the asked motion moves from `here` to `ahead`: the next guess."""
-    change = np.zeros(model.nv)
-    mujoco.mj_differentiatePos(model, change, 1.0, here, ahead)
-    guess = solved.copy()
-    mujoco.mj_integratePos(model, guess, change, 1.0)
-    return guess
-
-
-def _settled(model: mujoco.MjModel, asked: Array, solved: Array, window: Array) -> Array:
-    """`solved` without the jerks where soles begin and end: its way from `asked` averaged."""
-    way = np.zeros((len(asked), model.nv))
-    for row, a, b in zip(way, asked, solved, strict=True):
-        mujoco.mj_differentiatePos(model, row, 1.0, a, b)
-    way = convolve1d(way, window, axis=0, mode="nearest")
-    settled = asked.copy()
-    for qpos, change in zip(settled, way, strict=True):
-        mujoco.mj_integratePos(model, qpos, change, 1.0)
-    return settled
+    def _posture_cost(self, i: int) -> Array:
+        model = self._motion.model
+        cost = np.full(model.nv, _POSTURE)
+        cost[:6] = 0.0
+        for leg in self._legs:
+            if self._contacts.bears[i, leg.soles].any():
+                cost[leg.dofs] = _BEARING_LEG
+                bend = self._motion.qpos[i, model.jnt_qposadr[model.dof_jntid[leg.knee]]]
+                cost[leg.knee] += _POSTURE * np.exp(-((bend / _STRAIGHT) ** 2))
+        return cost
 
 
-def _rounded(motion: Motion, width: float) -> Array:
-    qpos = motion.qpos.copy()
-    for i in range(1, len(qpos)):
-        if qpos[i, 3:7] @ qpos[i - 1, 3:7] < 0:
-            qpos[i, 3:7] *= -1
-    smooth = qpos.copy()
-    columns = bearing_columns(motion.model)
-    window = _window(motion.time, width)
-    smooth[:, columns] = convolve1d(qpos[:, columns], window, axis=0, mode="nearest")
-    smooth[:, 3:7] /= np.linalg.norm(smooth[:, 3:7], axis=1, keepdims=True)
-    return np.asarray(smooth)
+def _lift(heights: Array, freedom: Array, feet: list[NDArray[np.int64]], time: Array) -> Array:
+    """What each sole is lifted by, (T, S), m: smooth, a whole foot alike, none that bears."""
+    rate = 1.0 / float(np.median(np.diff(time)))
+    width = 2 * int(0.5 * _LIFTING * rate) + 1
+    lift = np.zeros_like(heights)
+    for soles in feet:
+        short = np.maximum(_BRUSH * freedom[:, soles] - heights[:, soles], 0.0).max(axis=1)
+        smooth = averaged(maximum_filter1d(short, width)[:, None], 2 * _LIFTING, rate)
+        lift[:, soles] = smooth * freedom[:, soles]
+    return lift
 
 
-def _softened(planted: NDArray[np.bool_], time: Array) -> Array:
-    window = _window(time, SOFTENING)
-    held = convolve1d(planted.astype(float), window, axis=0, mode="nearest")
-    # While it is planned to stand a sole is held wholly; before and after it is led there and away.
-    return np.asarray(np.where(planted, 1.0, np.clip(2.0 * held, 0.0, 1.0) ** 2))
+def _freedom(contacts: ContactSchedule) -> Array:
+    """How free of the floor each sole is, (T, S): 0 while it bears, 1 from `_LIFTING` away."""
+    rate = 1.0 / float(np.median(np.diff(contacts.time)))
+    away = [
+        distance_transform_edt(~bears) if bears.any() else np.full(len(bears), np.inf)
+        for bears in contacts.bears.T
+    ]
+    share = np.clip(np.stack(away, axis=1) / (rate * _LIFTING), 0.0, 1.0)
+    return np.asarray(share**2 * (3.0 - 2.0 * share))
 
 
-def _window(time: Array, width: float) -> Array:
-    rate = 1.0 / float(time[1] - time[0])
-    window = parzen(2 * int(width * rate / 2) + 1, sym=True)
-    return np.asarray(window / window.sum())
+@dataclass(frozen=True)
+class _Leg:
+    """A leg's DoFs, its knee's, and its rows among the soles."""
+
+    dofs: NDArray[np.int64]
+    knee: int
+    soles: NDArray[np.int64]
+
+
+def _legs(model: mujoco.MjModel, soles: NDArray[np.int64]) -> tuple[_Leg, ...]:
+    bodies = model.geom_bodyid[soles]
+    legs = []
+    for side in Side:
+        foot, toe = model.body(f"{side}_foot").id, model.body(f"{side}_toe").id
+        chain = [model.body(f"{side}_{part}").id for part in ("thigh", "shank", "foot")]
+        legs.append(
+            _Leg(
+                dofs=np.flatnonzero(np.isin(model.dof_bodyid, chain)),
+                knee=int(model.joint(f"{side}_knee_bend").dofadr[0]),
+                soles=np.flatnonzero(np.isin(bodies, (foot, toe))),
+            )
+        )
+    return tuple(legs)

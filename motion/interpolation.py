@@ -9,8 +9,6 @@ from itertools import pairwise
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import convolve1d
-from scipy.signal.windows import parzen
 
 from enpointe.errors import MotionError
 from enpointe.models.keypose import KeyPose, KeyPoseSolver
@@ -18,6 +16,7 @@ from enpointe.models.leg_target import OnPointe, Standing
 from enpointe.models.stances import StanceTracker
 from enpointe.models.style import Style
 from enpointe.models.target import pose_target
+from enpointe.motion.averaging import averaged_qpos
 from enpointe.motion.bearing import bearing_columns
 from enpointe.motion.effort import Effort, find_effort
 from enpointe.motion.grounding import Contact, ground
@@ -228,12 +227,6 @@ def _hold(
 def _round_corners(model: mujoco.MjModel, qpos: Array) -> Array:
     """Average over Parzen windows; quaternions nearly agree within one, so theirs is sound too."""
     legs = bearing_columns(model)
-    smooth = _averaged(qpos, ROUNDING)
-    smooth[:, legs] = _averaged(qpos[:, legs], LEG_ROUNDING)
-    smooth[:, 3:7] /= np.linalg.norm(smooth[:, 3:7], axis=1, keepdims=True)
+    smooth = averaged_qpos(qpos, ROUNDING, RATE)
+    smooth[:, legs] = averaged_qpos(qpos, LEG_ROUNDING, RATE)[:, legs]
     return smooth
-
-
-def _averaged(values: Array, width: float) -> Array:
-    window = parzen(2 * int(width * RATE / 2) + 1, sym=True)
-    return np.asarray(convolve1d(values, window / window.sum(), axis=0, mode="nearest"))

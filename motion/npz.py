@@ -13,7 +13,14 @@ from enpointe.errors import FormatError, MotionError
 from enpointe.files import atomic_path
 from enpointe.motion.motion import Event, Motion
 
-__all__ = ["load_arrays", "load_motion", "motion_arrays", "motion_from_arrays", "save_motion"]
+__all__ = [
+    "is_motion",
+    "load_arrays",
+    "load_motion",
+    "motion_arrays",
+    "motion_from_arrays",
+    "save_motion",
+]
 
 Arrays = Mapping[str, NDArray[np.generic]]
 _FORMAT = "enpointe motion 1"
@@ -34,6 +41,15 @@ def load_motion(path: Path, model: mujoco.MjModel) -> Motion:
         FormatError: Not such a file, or of another body.
     """
     return motion_from_arrays(load_arrays(path, _FORMAT), model, path)
+
+
+def is_motion(path: Path) -> bool:
+    """Whether a file says that it is a motion; what it says else is for its own reader to judge.
+
+    Raises:
+        FormatError: There is no such file, or it is no NPZ file.
+    """
+    return _stated(_opened(path)) == _FORMAT
 
 
 def motion_arrays(motion: Motion, prefix: str = "") -> dict[str, NDArray[np.generic]]:
@@ -95,14 +111,22 @@ def load_arrays(path: Path, expected: str) -> dict[str, NDArray[np.generic]]:
     Raises:
         FormatError: No NPZ file, or another format or version.
     """
+    arrays = _opened(path)
+    found = _stated(arrays)
+    if found != expected:
+        raise FormatError(f"expected {expected!r}, found {found or 'no format'!r}", path)
+    return arrays
+
+
+def _opened(path: Path) -> dict[str, NDArray[np.generic]]:
     try:
         with np.load(path, allow_pickle=False) as stored:
-            arrays = {name: stored[name] for name in stored.files}
+            return {name: stored[name] for name in stored.files}
     except FileNotFoundError:
         raise FormatError("there is no such file", path) from None
     except Exception as error:  # numpy and zipfile raise many kinds on damaged files
         raise FormatError(f"not an NPZ file that can be read ({error})", path) from None
-    found = str(arrays.get("format", ""))
-    if found != expected:
-        raise FormatError(f"expected {expected!r}, found {found or 'no format'!r}", path)
-    return arrays
+
+
+def _stated(arrays: Arrays) -> str:
+    return str(arrays.get("format", ""))

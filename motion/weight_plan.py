@@ -1,153 +1,292 @@
-"""Where the weight goes over a phrase, so that the floor can carry it there.
+"""Where the weight must go for a motion to be possible: the centre of mass over time, in CasADi.
 
-The floor pushes inside the support and nowhere else: the zero-moment point p must be in the hull of
-the soles on the floor. With the height of the centre of mass and the angular momentum of the motion
-as they are, p is linear in the horizontal centre of mass c,
+The floor can only push, and only under the feet. With the height c_z and the angular momentum L of
+the motion given, the zero-moment point of a centre of mass c is
 
-    p = c - h c'' - m,    h = c_z / (c''_z + g),    m = (L'_y, -L'_x) / (M (c''_z + g)),
+    p_x = c_x - (c_z c_x'' + L_y' / m) / (c_z'' + g),
+    p_y = c_y - (c_z c_y'' - L_x' / m) / (c_z'' + g)
 
-so that the way of the weight is a quadratic programme over the whole phrase (Kajita et al. 2003 as
-a programme; Wieber 2006):
+(Vukobratovic and Borovac 2004; Kajita et al. 2003, eq. 3, with L). The plan is the smoothest motion
+near the one asked whose p stays inside the planned support, a convex quadratic programme:
 
-    minimise    sum |c - c_asked|^2 + jerk |c'''|^2 + even |p - middle|^2 + far |s|^2
-    subject to  A_k p_k <= b_k - margin + s_k,   s >= 0,   at rest at both ends.
+    min  w_c |c - c_asked|^2 + w_u |c'''|^2 + w_s sum s + w_p |p - middle|^2
+    s.t. A_k p_k <= b_k - margin + s_k,  s_k >= 0,  c'' = 0 in the air.
 
-Weight so leaves a foot before the foot does, since it can't be stopped at once. What no way of the
-weight can keep shows in the slack s, in metres, and when.
+A plan that cannot be has s > 0 there: how far outside the feet the floor would have to push. The
+height is planned before, the same way: the smoothest near and not above the one asked, since
+straight legs are no longer than they are, that never falls faster than `_DROP`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
+import mujoco
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter1d
 
+from enpointe.models.foot_positions import support_hull
 from enpointe.models.rules.balance import centroid, half_planes
+from enpointe.motion.contact_schedule import ContactSchedule
+from enpointe.motion.motion import Motion
 
-__all__ = ["WeightPlan", "plan_height", "plan_weight"]
+__all__ = ["PLAN_RATE", "WeightPlan", "plan_weight"]
 
 Array = NDArray[np.float64]
-MARGIN = 0.012
-"""How far inside the support the zero-moment point stays, m; half of what a small one leaves."""
-JERK = 3e-6
-"""Cost of squared jerk, m^2 per (m/s^3)^2: a second of weight shift may stray centimetres from what
-is asked before its ends are rounded more."""
-EVEN = 0.05
-"""Cost of the zero-moment point's squared distance from the middle of the support: a push that is
-always at the edge leaves nothing for keeping balance."""
-FAR = 1e3
-"""Cost of leaving the support by a metre squared, against straying as far from what is asked."""
-GRAVITY = 9.81
+
+PLAN_RATE = 50.0
+"""Knots of the plan a second."""
+MARGIN = 0.020
+"""How far inside the support the zero-moment point stays, m, where that is broad enough: what is
+left is all that a controller has to put errors right with."""
+_MOST = 0.75
+"""Of a narrow support this share of its half-width is kept instead."""
+_NEAR, _SMOOTH, _MIDDLE, _OUTSIDE = 30.0, 2e-5, 1.0, 300.0
+"""Weights: near what is asked (1/m^2), smooth (s^6/m^2), in the middle (1/m^2), outside (1/m)."""
+_HEIGHT, _HEIGHT_SMOOTH = 2000.0, 2e-4
+"""Weights of the height: near what is asked (1/m^2), smooth (s^6/m^2). Bent knees show more than a
+hip that moves aside."""
+_TALLER = 0.002
+"""m above the height asked."""
+_DROP = 0.3
+"""Share of gravity that the weight falls by at most: feet that carry nothing can't steer."""
+_MOMENTUM_SIGMA = 0.015
+"""s: differences of differences of sampled poses need some averaging; muscles do as much."""
 
 
 @dataclass(frozen=True)
 class WeightPlan:
-    """The way of the weight.
+    """The centre of mass of a motion that can be danced, at K knots.
 
     Attributes:
-        time: (T,), s, evenly spaced.
-        com: (T, 2), m.
-        zmp: (T, 2), the zero-moment point, m.
-        outside: (T,), how far it has to leave the support less its margin, m; 0 where it need not.
+        time: (K,), s.
+        com: (K, 3), m.
+        velocity: (K, 3), m/s.
+        acceleration: (K, 3), m/s^2.
+        zmp: (K, 2), m.
+        outside: (K,), how far outside its support the zero-moment point is planned, m: 0 where the
+            floor can give what the motion needs.
+        shifted: (K,), how far the centre of mass is from where the motion had it, m.
     """
 
     time: Array
     com: Array
+    velocity: Array
+    acceleration: Array
     zmp: Array
     outside: Array
+    shifted: Array
 
-
-def plan_height(time: Array, height: Array, standing: NDArray[np.bool_]) -> Array:
-    """The height of the centre of mass nearest to the one asked that legs can drive, (T,), m.
-
-    |z''| <= `LIFT` while anything stands: more downwards and the feet leave the floor.
-
-    Args:
-        time: (T,), s, evenly spaced.
-        height: What is asked, (T,), m.
-        standing: (T,), whether a sole is on the floor.
-    """
-    count, dt = len(time), float(time[1] - time[0])
-    way = ca.MX.sym("z", count)
-    bend = (way[2:] - 2 * way[1:-1] + way[:-2]) / dt**2
-    jerk = (bend[1:] - bend[:-1]) / dt
-    cost = ca.sumsqr(way - ca.DM(height)) + HEIGHT_JERK * ca.sumsqr(jerk)
-    most = np.where(standing[1:-1], LIFT, np.inf)
-    problem: dict[str, Any] = {"x": way, "f": cost, "g": bend}
-    solver = ca.nlpsol("height", "ipopt", problem, _QUIET)
-    solution = solver(x0=height, lbg=-most, ubg=most)
-    return np.asarray(solution["x"]).ravel()
-
-
-LIFT = 5.0
-"""m/s^2: half of gravity is left to the feet."""
-HEIGHT_JERK = 1e-8
-_QUIET: dict[str, Any] = {
-    "ipopt.print_level": 0,
-    "ipopt.sb": "yes",
-    "print_time": False,
-    "error_on_fail": False,
-}
+    def at(self, t: float) -> tuple[Array, Array, Array]:
+        """Place, velocity and acceleration (3,) at `t` seconds; at rest beyond both ends."""
+        if t >= self.time[-1] or t <= self.time[0]:
+            end = -1 if t >= self.time[-1] else 0
+            return self.com[end], np.zeros(3), np.zeros(3)
+        i = int((t - self.time[0]) * PLAN_RATE)
+        i = min(i, len(self.time) - 2)
+        w = (t - self.time[i]) * PLAN_RATE
+        com, velocity, acceleration = (
+            (1 - w) * rows[i] + w * rows[i + 1]
+            for rows in (self.com, self.velocity, self.acceleration)
+        )
+        return com, velocity, acceleration
 
 
 def plan_weight(
-    time: Array,
-    com: Array,
-    momentum_rate: Array,
-    supports: Sequence[Array],
-    mass: float,
+    motion: Motion, contacts: ContactSchedule, reached: Motion | None = None
 ) -> WeightPlan:
-    """Plan the way of the weight nearest to the one asked.
+    """Plan the centre of mass of a motion.
 
     Args:
-        time: (T,), s, evenly spaced.
-        com: What is asked, (T, 3), m; its height is kept.
-        momentum_rate: L' about the centre of mass, (T, 3), N m.
-        supports: Hull of the soles on the floor at each time, counter-clockwise; fewer than three
-            corners ask for nothing.
-        mass: M, kg.
+        motion: As it was composed, balanced or not.
+        contacts: Its schedule.
+        reached: The motion as it was posed over an earlier plan, whose height and angular momentum
+            count instead: what bodies reach is not quite what was asked.
     """
-    count, dt = len(time), float(time[1] - time[0])
-    lift = np.gradient(np.gradient(com[:, 2], dt), dt) + GRAVITY
-    # Near free fall the floor gives nothing, and there is nothing to plan.
-    lift = np.maximum(lift, 0.3 * GRAVITY)
-    levers = com[:, 2] / lift
-    moments = np.stack([momentum_rate[:, 1], -momentum_rate[:, 0]], axis=1) / (mass * lift[:, None])
-    way, slack = ca.MX.sym("c", 2, count), ca.MX.sym("s", count)
-    bend = (way[:, 2:] - 2 * way[:, 1:-1] + way[:, :-2]) / dt**2
-    acceleration = ca.horzcat(ca.DM.zeros(2, 1), bend, ca.DM.zeros(2, 1))
-    point = way - acceleration * ca.repmat(ca.DM(levers).T, 2, 1) - ca.DM(moments.T)
-    jerk = (bend[:, 1:] - bend[:, :-1]) / dt
-    cost = ca.sumsqr(way - ca.DM(com[:, :2].T)) + JERK * ca.sumsqr(jerk) + FAR * ca.sumsqr(slack)
-    middles = np.array(
-        [centroid(h) if len(h) > 2 else c for h, c in zip(supports, com[:, :2], strict=True)]
+    time = np.arange(motion.time[0], motion.time[-1] + 0.5 / PLAN_RATE, 1.0 / PLAN_RATE)
+    com, momentum = _centroidal(motion, time)
+    if reached is not None:
+        there, momentum = _centroidal(reached, time)
+        com[:, 2] = there[:, 2]
+    sigma = _MOMENTUM_SIGMA * PLAN_RATE
+    twist = np.gradient(gaussian_filter1d(momentum, sigma, axis=0), time, axis=0)
+    gravity = float(-motion.model.opt.gravity[2])
+    hulls = [
+        support_hull(contacts.points[i, contacts.bears[i], :2])
+        for i in (contacts.index(float(t)) for t in time)
+    ]
+    lift = _plan_height(com[:, 2], np.array([len(hull) > 0 for hull in hulls]), gravity)
+    load = np.maximum(lift[2] + gravity, 0.2 * gravity)
+    arm = lift[0] / load
+    mass = float(motion.model.body_mass.sum())
+    offset = np.stack([-twist[:, 1], twist[:, 0]], axis=1) / (mass * load)[:, None]
+    place, velocity, acceleration, zmp, outside = _plan_level(com[:, :2], arm, offset, hulls)
+    return WeightPlan(
+        time,
+        np.column_stack([place, lift[0]]),
+        np.column_stack([velocity, lift[1]]),
+        np.column_stack([acceleration, lift[2]]),
+        zmp,
+        outside,
+        np.linalg.norm(place - com[:, :2], axis=1),
     )
-    cost += EVEN * ca.sumsqr(point - ca.DM(middles.T))
-    rows, offsets = [], []
-    for k, hull in enumerate(supports):
-        if len(hull) < 3:
+
+
+def _centroidal(motion: Motion, time: Array) -> tuple[Array, Array]:
+    """Centre of mass (K, 3) and angular momentum about it (K, 3) of the motion."""
+    model = motion.model
+    data = mujoco.MjData(model)
+    com, momentum = np.empty((len(time), 3)), np.empty((len(time), 3))
+    for k, t in enumerate(time):
+        data.qpos[:], data.qvel[:], _ = motion.sample(float(t))
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        mujoco.mj_comVel(model, data)
+        mujoco.mj_subtreeVel(model, data)
+        com[k], momentum[k] = data.subtree_com[0], data.subtree_angmom[0]
+    return com, momentum
+
+
+def _plan_height(asked: Array, standing: NDArray[np.bool_], gravity: float) -> Array:
+    """Height, its velocity and acceleration, (3, K)."""
+    plan = _Chain(1, len(asked))
+    plan.rest_at_ends()
+    plan.add(plan.acceleration.T, -_DROP * gravity, np.inf, where=standing)
+    plan.add(plan.acceleration.T + gravity, 0, 0, where=~standing)
+    plan.add(plan.place.T - ca.DM(asked), -np.inf, _TALLER, where=standing)
+    cost = _HEIGHT * ca.sumsqr(plan.place.T - ca.DM(asked)) + _HEIGHT_SMOOTH * ca.sumsqr(plan.jerk)
+    (place, velocity, acceleration) = plan.minimise(
+        cost, [plan.place, plan.velocity, plan.acceleration], asked[:, None]
+    )
+    return np.stack([place, velocity, acceleration])
+
+
+def _plan_level(
+    asked: Array, arm: Array, offset: Array, hulls: list[Array]
+) -> tuple[Array, Array, Array, Array, Array]:
+    """Place, velocity, acceleration and zero-moment point (K, 2), and how far outside (K,)."""
+    plan = _Chain(2, len(asked))
+    plan.rest_at_ends()
+    outside = ca.MX.sym("outside", len(asked))
+    zmp = plan.place - plan.acceleration * ca.DM(np.tile(arm, (2, 1))) + ca.DM(offset.T)
+    middle = np.array(asked)
+    standing = np.zeros(len(asked))
+    for k, hull in enumerate(hulls):
+        if len(hull) == 0:
+            plan.add(plan.acceleration[:, k], 0, 0)
             continue
-        normals, edges = half_planes(hull)
-        room = float(np.min(edges - normals @ centroid(hull)))
-        rows.append(ca.mtimes(ca.DM(normals), point[:, k]) - slack[k])
-        offsets.append(edges - min(MARGIN, 0.5 * room))
-    rest = ca.vertcat(way[:, 1] - way[:, 0], way[:, -1] - way[:, -2])
-    unknowns = ca.vertcat(ca.vec(way), slack)
-    problem: dict[str, Any] = {"x": unknowns, "f": cost, "g": ca.vertcat(*rows, rest)}
-    solver = ca.nlpsol("weight", "ipopt", problem, _QUIET)
-    high = np.concatenate([*offsets, np.zeros(4)])
-    low = np.concatenate([np.full(len(high) - 4, -np.inf), np.zeros(4)])
-    solution = solver(
-        x0=np.concatenate([com[:, :2].ravel(), np.zeros(count)]),
-        lbx=np.concatenate([np.full(2 * count, -np.inf), np.zeros(count)]),
-        lbg=low,
-        ubg=high,
+        standing[k] = 1.0
+        middle[k] = centroid(hull) if len(hull) > 2 else hull.mean(axis=0)
+        normals, offsets = _shrunk(hull)
+        plan.add(ca.DM(normals) @ zmp[:, k] - outside[k] - ca.DM(offsets), -np.inf, 0)
+    weight = ca.DM(np.tile(standing, (2, 1)))
+    cost = (
+        _NEAR * ca.sumsqr(plan.place - ca.DM(asked.T))
+        + _SMOOTH * ca.sumsqr(plan.jerk)
+        + _OUTSIDE * ca.sum1(outside)
+        + _MIDDLE * ca.sumsqr(weight * (zmp - ca.DM(middle.T)))
     )
-    found = np.asarray(solution["x"]).ravel()
-    planned = found[: 2 * count].reshape(count, 2)
-    zmp = np.asarray(ca.Function("p", [unknowns], [point])(found)).T
-    return WeightPlan(time, planned, zmp, found[2 * count :])
+    wanted = [plan.place, plan.velocity, plan.acceleration, zmp, outside.T]
+    return tuple(plan.minimise(cost, wanted, asked, outside))  # type: ignore[return-value]
+
+
+class _Chain:
+    """A place of some axes over K knots, driven by its jerk, constant from knot to knot."""
+
+    def __init__(self, axes: int, count: int) -> None:
+        self.place, self.velocity, self.acceleration = (
+            ca.MX.sym(name, axes, count) for name in ("place", "velocity", "acceleration")
+        )
+        self.jerk = ca.MX.sym("jerk", axes, count - 1)
+        self._rows: list[ca.MX] = []
+        self._low: list[Array] = []
+        self._high: list[Array] = []
+        dt = 1.0 / PLAN_RATE
+        c, v, a, u = self.place, self.velocity, self.acceleration, self.jerk
+        now, then = slice(0, count - 1), slice(1, count)
+        self.add(c[:, then] - c[:, now] - dt * v[:, now] - dt**2 / 2 * a[:, now] - dt**3 / 6 * u)
+        self.add(v[:, then] - v[:, now] - dt * a[:, now] - dt**2 / 2 * u)
+        self.add(a[:, then] - a[:, now] - dt * u)
+
+    def add(
+        self,
+        expression: ca.MX,
+        low: float = 0.0,
+        high: float = 0.0,
+        where: NDArray[np.bool_] | None = None,
+    ) -> None:
+        """Keep an expression, or those of its rows, between two bounds."""
+        rows = ca.vec(expression)
+        if where is not None:
+            rows = rows[np.flatnonzero(where).tolist()]
+        self._rows.append(rows)
+        self._low.append(np.full(rows.numel(), low))
+        self._high.append(np.full(rows.numel(), high))
+
+    def rest_at_ends(self) -> None:
+        """Begin and end still."""
+        for k in (0, -1):
+            self.add(self.velocity[:, k])
+            self.add(self.acceleration[:, k])
+
+    def minimise(
+        self,
+        cost: ca.MX,
+        wanted: list[ca.MX],
+        start: Array,
+        slack: ca.MX | None = None,
+    ) -> list[Array]:
+        """The wanted expressions at the minimum, knots first; `slack` is not negative."""
+        chain = ca.veccat(self.place, self.velocity, self.acceleration, self.jerk)
+        unknowns = chain if slack is None else ca.veccat(chain, slack)
+        lower = np.full(unknowns.numel(), -np.inf)
+        lower[chain.numel() :] = 0.0
+        problem = {"x": unknowns, "f": cost, "g": ca.vertcat(*self._rows)}
+        solver = ca.nlpsol("weight", "ipopt", problem, _QUADRATIC)
+        guess = np.zeros(unknowns.numel())
+        guess[: start.size] = start.ravel()
+        found = solver(
+            x0=guess,
+            lbx=lower,
+            ubx=np.inf,
+            lbg=np.concatenate(self._low),
+            ubg=np.concatenate(self._high),
+        )["x"]
+        read = ca.Function("read", [unknowns], [each.T for each in wanted])
+        return [np.array(part).squeeze() for part in read.call([found])]
+
+
+_QUADRATIC: dict[str, Any] = {
+    "ipopt": {
+        "print_level": 0,
+        "sb": "yes",
+        "mehrotra_algorithm": "yes",
+        "hessian_constant": "yes",
+        "jac_c_constant": "yes",
+        "jac_d_constant": "yes",
+    },
+    "print_time": False,
+}
+"""IPOPT told that the problem is a convex quadratic one, which it solves in some dozen steps."""
+
+
+def _shrunk(hull: Array) -> tuple[Array, Array]:
+    """Half-planes of the support, drawn in by the margin, or by most of what room there is."""
+    if len(hull) < 3:
+        return _around(hull)
+    normals, offsets = half_planes(hull)
+    room = float(np.min(offsets - normals @ centroid(hull)))
+    return normals, offsets - min(MARGIN, _MOST * room)
+
+
+def _around(hull: Array) -> tuple[Array, Array]:
+    """A support of one or two points: the box along it."""
+    along = hull[-1] - hull[0]
+    length = float(np.linalg.norm(along))
+    e = along / length if length > 0 else np.array([1.0, 0.0])
+    across = np.array([-e[1], e[0]])
+    normals = np.array([e, -e, across, -across])
+    return normals, np.array([max(n @ p for p in hull) for n in normals])

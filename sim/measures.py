@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from enpointe.controllers import Recording
 from enpointe.sim import balance, feet
 
-__all__ = ["Flight", "Measures", "measure"]
+__all__ = ["Flight", "Measures", "find_flights", "heading", "measure"]
 
 Array = NDArray[np.float64]
 
@@ -117,7 +117,9 @@ def measure(recording: Recording) -> Measures:
         slip=balance.slip(points, forces).max(axis=1),
         error=_joint_error(recording),
         torque_fraction=np.abs(recording.effort) / limit,
-        flights=_flights(recording, forces, com),
+        flights=find_flights(
+            recording.time, recording.qpos, com, forces[:, :, 2].sum(axis=1) <= balance.LOADED
+        ),
         capture_margin=capture,
         fell_at=_fell_at(recording, margins, capture),
         root_force_max=float(np.max(channels["root_force"])),
@@ -162,18 +164,27 @@ def _joint_error(recording: Recording) -> Array:
     return np.asarray(recording.qpos[:, joints] - wanted)
 
 
-def _flights(recording: Recording, forces: Array, com: Array) -> tuple[Flight, ...]:
-    aloft = forces[:, :, 2].sum(axis=1) <= balance.LOADED
+def find_flights(
+    time: Array, qpos: Array, com: Array, aloft: NDArray[np.bool_]
+) -> tuple[Flight, ...]:
+    """Times in the air, but for the shortest.
+
+    Args:
+        time: (N,), s, evenly spaced.
+        qpos: (N, nq).
+        com: (N, 3), m.
+        aloft: (N,), whether nothing bears weight.
+    """
     edges = np.flatnonzero(np.diff(np.concatenate([[False], aloft, [False]]).astype(int)))
     flights = []
     for start, end in zip(edges[::2], edges[1::2], strict=True):
-        if (end - start) * recording.period < MIN_FLIGHT:
+        if (end - start) * (time[1] - time[0]) < MIN_FLIGHT:
             continue
-        yaw = np.unwrap([_yaw(q) for q in recording.qpos[start:end, 3:7]])
+        yaw = heading(qpos[start:end])
         flights.append(
             Flight(
-                float(recording.time[start]),
-                float(recording.time[end - 1]),
+                float(time[start]),
+                float(time[end - 1]),
                 float(com[start:end, 2].max() - com[start, 2]),
                 float(np.degrees(yaw[-1] - yaw[0])),
             )
@@ -185,6 +196,11 @@ MIN_FLIGHT = 0.02
 """Shorter times in the air are a rattle of the contact, not a jump, s."""
 
 
-def _yaw(quaternion: Array) -> float:
-    w, x, y, z = quaternion
-    return float(np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)))
+def heading(qpos: Array) -> Array:
+    """Which way the pelvis faces, (N,), rad to the left of where x points, without jumps.
+
+    Args:
+        qpos: (N, nq), the root first.
+    """
+    w, x, y, z = qpos[:, 3:7].T
+    return np.asarray(np.unwrap(np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))))

@@ -76,7 +76,7 @@ class CentreOfMass:
     """
 
     name: ClassVar[str] = "centre of mass"
-    weight: float = 30.0
+    weight: float = 300.0
     capture_gain: float = 5.0
     stiffness: float = 300.0
     damping: float = 35.0
@@ -111,7 +111,7 @@ class AngularMomentum:
     """
 
     name: ClassVar[str] = "angular momentum"
-    weight: float = 0.005
+    weight: float = 0.001
     gain: float = 5.0
 
     def rows(self, instant: Instant, goal: Goal) -> Rows:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import io
+import itertools
 import re
 from collections.abc import Callable, Sequence
 from html import escape
@@ -24,6 +25,7 @@ __all__ = [
     "LEFT",
     "PALE",
     "RIGHT",
+    "apart",
     "mark_beats",
     "quiet",
     "thinned",
@@ -162,3 +164,12 @@ def mark_beats(axes: Axes, events: Sequence[Event], *, labels: bool = True) -> N
                 color=GREY,
                 fontsize=8,
             )
+
+
+def apart(heights: list[float], gap: float) -> list[float]:
+    """Label heights moved apart so that none covers another."""
+    order = sorted(range(len(heights)), key=lambda i: heights[i])
+    placed = list(heights)
+    for below, above in itertools.pairwise(order):
+        placed[above] = max(placed[above], placed[below] + gap)
+    return placed

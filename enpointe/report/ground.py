@@ -1,8 +1,8 @@
-"""Balance and the floor, drawn: the support from above, the margin and the forces over time."""
+"""Balance, drawn: the support from above, and the margins over time."""
 
 from __future__ import annotations
 
-import itertools
+from collections.abc import Iterator, Sequence
 
 import mujoco
 import numpy as np
@@ -19,6 +19,7 @@ from enpointe.report.chart import (
     LEFT,
     PALE,
     RIGHT,
+    apart,
     mark_beats,
     quiet,
     thinned,
@@ -27,7 +28,7 @@ from enpointe.report.chart import (
 from enpointe.sim import balance
 from enpointe.sim.measures import Measures
 
-__all__ = ["force_chart", "margin_chart", "support_at", "support_chart"]
+__all__ = ["margin_chart", "support_at", "support_chart"]
 
 Array = NDArray[np.float64]
 _FLESH_HEIGHT = 0.03
@@ -158,77 +159,64 @@ def _sole(model: mujoco.MjModel, data: mujoco.MjData, side: str) -> Array:
     return support_hull(points[points[:, 2] < _FLESH_HEIGHT, :2])
 
 
+_DEPTH = 3.0
+"""How many times as far below the edge as above it is drawn; who is farther out has fallen."""
+
+
 @quiet
 def margin_chart(recording: Recording, measures: Measures, name: str) -> str:
-    """How far inside the support the centre of mass is, over time."""
-    figure = Figure(figsize=(8.25, 2.3))
+    """How far inside the support the centre of mass is, and where it is heading, over time."""
+    figure = Figure(figsize=(8.25, 2.6))
     axes = figure.subplots()
-    margin = np.where(np.isfinite(measures.margin), 1000.0 * measures.margin, np.nan)
+    margin, heading = (
+        np.where(np.isfinite(m), 1000.0 * m, np.nan)
+        for m in (measures.margin, measures.capture_margin)
+    )
     mark_beats(axes, recording.as_motion().key_events)
-    axes.plot(*thinned(recording.time, margin), color=COM)
+    lines = (("extrapolated", heading, GREY, 0.9), ("centre of mass", margin, COM, 1.4))
+    for _, values, colour, width in lines:
+        axes.plot(*thinned(recording.time, values), color=colour, linewidth=width)
     axes.axhline(0.0, color=INK, linewidth=1.0)
-    least = measures.support_margin_min
-    if least is not None:
-        low = int(np.nanargmin(margin))
-        axes.plot(recording.time[low], margin[low], "o", color=COM, markersize=4)
-        axes.annotate(
-            f"least {1000.0 * least:.0f} mm",
-            (float(recording.time[low]), float(margin[low])),
-            (5, -11),
-            textcoords="offset points",
-            color=COM,
-        )
-        axes.set_ylim(min(0.0, 1.15 * float(np.nanmin(margin))), 1.12 * float(np.nanmax(margin)))
+    if np.any(np.isfinite(margin)):
+        highest = max(1.15 * float(max(np.nanmax(margin), np.nanmax(heading))), 10.0)
+        lowest = 1.15 * float(min(np.nanmin(margin), np.nanmin(heading), 0.0))
+        axes.set_ylim(max(lowest, -_DEPTH * highest), highest)
+        _mark_least(axes, recording.time, margin)
+        for text, height, colour in _ends(axes, lines):
+            place = (float(recording.time[-1]), height)
+            axes.annotate(
+                text, place, (4, 0), textcoords="offset points", va="center", color=colour
+            )
     axes.set_xlim(0.0, float(recording.time[-1]))
-    axes.text(0.006, 0.04, "edge of the support", transform=axes.transAxes, color=GREY)
+    at_edge = axes.get_yaxis_transform()
+    axes.text(0.006, 0.0, "edge of the support", transform=at_edge, va="bottom", color=GREY)
     axes.set_xlabel("time, s")
     axes.set_ylabel("inside the support, mm")
-    return to_svg(figure, name, "Margin of balance over time")
+    return to_svg(figure, name, "Margins of balance over time")
 
 
-@quiet
-def force_chart(recording: Recording, measures: Measures, name: str) -> str:
-    """Vertical force under each foot over time, with the body's weight."""
-    figure = Figure(figsize=(8.25, 2.7))
-    axes = figure.subplots()
-    model = recording.model
-    weight = float(model.body_mass.sum() * -model.opt.gravity[2])
-    mark_beats(axes, recording.as_motion().key_events)
-    total = measures.foot_force.sum(axis=1)
-    end = float(recording.time[-1])
-    lines = [
-        ("left foot", measures.foot_force[:, 0], LEFT, "-"),
-        ("right foot", measures.foot_force[:, 1], RIGHT, "-"),
-        ("both", total, INK, "-"),
-    ]
-    for _, force, colour, style in lines:
-        axes.plot(*thinned(recording.time, force), color=colour, linestyle=style, linewidth=1.1)
-    axes.axhline(weight, color=GREY, linewidth=0.8, linestyle="--")
-    axes.text(
-        0.008 * end,
-        0.94 * weight,
-        f"body weight {weight:.0f} N",
-        va="top",
-        color=GREY,
-        fontsize=8,
+def _ends(
+    axes: Axes, lines: Sequence[tuple[str, Array, str, float]]
+) -> Iterator[tuple[str, float, str]]:
+    """Name, height and colour of the label at the end of each line."""
+    low, high = axes.get_ylim()
+    shown = [values[np.isfinite(values)] for _, values, _, _ in lines]
+    last = [float(np.clip(values[-1], low, high)) if len(values) else low for values in shown]
+    heights = apart(last, 0.13 * (high - low))
+    for (text, _, colour, _), height in zip(lines, heights, strict=True):
+        yield text, height, colour
+
+
+def _mark_least(axes: Axes, time: Array, margin: Array) -> None:
+    low = int(np.nanargmin(margin))
+    place = (float(time[low]), max(float(margin[low]), axes.get_ylim()[0]))
+    late = place[0] > 0.8 * float(time[-1])
+    axes.plot(*place, "o", color=COM, markersize=4, clip_on=False)
+    axes.annotate(
+        f"least {margin[low]:.0f} mm".replace("-", "−"),
+        place,
+        (-6, 6) if late else (5, -11 if margin[low] > 0.0 else 2),
+        textcoords="offset points",
+        ha="right" if late else "left",
+        color=COM,
     )
-    tail = slice(-max(len(total) // 20, 1), None)
-    heights = _apart([float(np.mean(force[tail])) for _, force, _, _ in lines], 0.075 * weight)
-    for (label, _, colour, _), height in zip(lines, heights, strict=True):
-        axes.annotate(
-            label, (end, height), (4, 0), textcoords="offset points", va="center", color=colour
-        )
-    axes.set_xlim(0.0, end)
-    axes.set_ylim(0.0, 1.12 * max(weight, float(np.percentile(total, 99.9))))
-    axes.set_xlabel("time, s")
-    axes.set_ylabel("up from the floor, N")
-    return to_svg(figure, name, "Vertical force of the floor on each foot over time")
-
-
-def _apart(heights: list[float], gap: float) -> list[float]:
-    """Label heights moved apart so that none covers another."""
-    order = sorted(range(len(heights)), key=lambda i: heights[i])
-    placed = list(heights)
-    for below, above in itertools.pairwise(order):
-        placed[above] = max(placed[above], placed[below] + gap)
-    return placed

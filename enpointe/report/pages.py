@@ -38,7 +38,8 @@ from enpointe.report.blocks import (
 from enpointe.report.certificates import certificate_tables, rules_sections
 from enpointe.report.chart import GREY, LEFT, RIGHT
 from enpointe.report.films import FilmFile
-from enpointe.report.ground import force_chart, margin_chart, support_chart
+from enpointe.report.forces import force_chart
+from enpointe.report.ground import margin_chart, support_chart
 from enpointe.report.joints import joint_chart, joint_rows
 from enpointe.report.movements import Movement, danced_tempo, movements
 from enpointe.report.pictures import jpeg
@@ -355,13 +356,16 @@ def _physics_sections(performance: Performance) -> tuple[Section, ...]:
         ),
         Chart(
             margin_chart(recording, measures, "margin"),
-            "How far inside the edge of the support the centre of mass is. Below the line the "
-            "dancer has to step or fall.",
+            "How far inside the edge of the support the centre of mass is (red), and the "
+            "extrapolated centre of mass, where its speed is taking it (grey). While the grey line "
+            "is above the edge the feet that stand can stop the fall; below it the dancer has to "
+            "step or fall.",
         ),
         Chart(
             force_chart(recording, measures, "forces"),
-            "What the floor gives back under each foot. Together they are the body's weight when "
-            "the dancer is still.",
+            "What the floor gives back under each foot; together they are the body's weight when "
+            "the dancer is still. Below, what each foot stands on: flat, demi-pointe, pointe or "
+            "the heel alone, the stronger the higher; nothing is drawn while it is in the air.",
         ),
     )
     joints = Chart(

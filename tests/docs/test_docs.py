@@ -137,8 +137,6 @@ def test_every_command_exists(page: str, words: list[str]) -> None:
         return
     assert words[0] == "enpointe"
     verb, *rest = words[1:]
-    if verb in NOT_YET:
-        return
     known = options(verb)
     for word in rest:
         if word.startswith("-"):
@@ -148,19 +146,9 @@ def test_every_command_exists(page: str, words: list[str]) -> None:
         from enpointe.motion import find_effort
 
         find_effort(given["--effort"])
-    if verb in ("perform", "compare") and rest and not rest[0].endswith(".bmn"):
+    if verb in ("perform", "compare", "sweep") and rest and not rest[0].endswith(".bmn"):
         poses = enpointe.notation.names() if "--hold" in rest else ()
         assert rest[0] in (*enpointe.notation.shipped_scores(), *poses)
-
-
-NOT_YET = {"check"}
-"""Verbs that the docs name to say that they don't exist."""
-
-
-def test_what_is_said_not_to_exist_does_not() -> None:
-    for verb in NOT_YET:
-        with pytest.raises(KeyError):
-            options(verb)
 
 
 def runs(pages: dict[Path, list[Block]]) -> Iterator[Any]:
@@ -341,6 +329,24 @@ def phrase() -> Score:
 def test_fields_of_a_kinematic_performance(phrase: Score) -> None:
     dance = enpointe.perform(phrase, controller="kinematic")
     assert set(dance.summary()) == fields("kinematic")
+
+
+def test_fields_of_a_check(phrase: Score) -> None:
+    assert set(enpointe.check(phrase).summary()) == fields("check")
+
+
+def test_fields_of_a_sweep() -> None:
+    from enpointe.models import dancer_model
+    from enpointe.sim.disturbance import Disturbances, Factors
+    from enpointe.sim.trial import Outcome
+
+    model = dancer_model(flesh=False)
+    factors = Factors().figures(model, model.qpos0)
+    fallen = Outcome(0, factors, False, 1.0, "fell", 0.0, None, None, None, None, None)
+    swept = enpointe.Sweep("T", 1.0, "pd", Disturbances.parse(None), 0, (fallen,), 1, 1.0)
+    figures = swept.summary()
+    assert set(figures) == fields("sweep")
+    assert set(figures["failures"][0]["factors"]) == fields("factors")  # type: ignore[index]
 
 
 @pytest.mark.slow

@@ -1,7 +1,8 @@
-"""A motion made danceable: the floor can carry its weight, and its feet stand where they stand."""
+"""A motion made danceable: planned contacts, a weight that the floor can carry, feet in place."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import mujoco
@@ -9,135 +10,157 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
+from enpointe.models import dancer_model
 from enpointe.models.foot_positions import support_hull
-from enpointe.motion import Motion, find_effort, interpolate
-from enpointe.motion.bearing import bearing_columns
-from enpointe.motion.contact_plan import plan_contacts, sole_geoms, steps
-from enpointe.motion.danceable import Danceable, danceable
-from enpointe.motion.weight_plan import LIFT, plan_height, plan_weight
+from enpointe.motion import Motion
+from enpointe.motion.contact_schedule import ON_FLOOR, SHORTEST, ContactSchedule, contact_schedule
+from enpointe.motion.danceable import Danceable, make_danceable
+from enpointe.motion.weight_plan import PLAN_RATE, WeightPlan, plan_weight
 from enpointe.sim.balance import margin
 
-from .dancing import PORTS_DE_BRAS, motion, solved, written_score
+from .floor import dance
 
-Array = NDArray[np.float64]
-MASS, HEIGHT = 54.0, 0.95
-TIME = np.arange(150) / 100
-SQUARE = np.array([[-0.1, -0.1], [0.1, -0.1], [0.1, 0.1], [-0.1, 0.1]])
-RETIRE = written_score(
-    "feet: fifth right front; arms: fifth en bas",
-    "left leg: straight; right leg: retiré devant; arms: fifth en avant",
-    tempo=25,
-)
+MOVING = ("temps-lie-grand-battement", "adage-developpe")
+MODEL = dancer_model(flesh=False)
+
+
+def standing(seconds: float = 1.0) -> Motion:
+    time = np.arange(0.0, seconds + 0.002, 0.004)
+    return Motion.from_qpos(MODEL, time, np.tile(MODEL.key("standing").qpos, (len(time), 1)))
 
 
 @cache
-def shifting() -> Motion:
-    quality, _, _ = find_effort(None)
-    return interpolate(solved(RETIRE), quality)
+def danceable(score: str) -> Danceable:
+    return make_danceable(dance(score).motion)
 
 
-@cache
-def made() -> Danceable:
-    return danceable(shifting())
+def feet(contacts: ContactSchedule) -> dict[str, np.ndarray]:
+    """(T,) whether each foot bears anything."""
+    names = [MODEL.geom(int(g)).name for g in contacts.soles]
+    return {
+        side: contacts.bears[:, [n.startswith(side) for n in names]].any(axis=1)
+        for side in ("left", "right")
+    }
 
 
-def still(x: float, y: float) -> Array:
-    return np.tile([x, y, HEIGHT], (len(TIME), 1))
+def test_a_standing_dancer_stands_on_all_her_soles() -> None:
+    assert contact_schedule(standing()).bears.all()
 
 
-@settings(max_examples=8, deadline=None)
-@given(st.floats(-0.06, 0.06), st.floats(-0.06, 0.06))
-def test_weight_leaves_before_the_foot(x: float, y: float) -> None:
-    """Support jumps from one square to another: the zero-moment point keeps to each in its time."""
-    ahead = SQUARE + np.array([0.25, 0.0])
-    both = support_hull(np.vstack([SQUARE, ahead]))
-    supports = [SQUARE] * 40 + [both] * 50 + [ahead] * 60
-    asked = still(x, y)
-    asked[75:, 0] += 0.25
-    plan = plan_weight(TIME, asked, np.zeros_like(asked), supports, MASS)
-    assert plan.outside.max() < 1e-3
-    assert all(margin(h, p) > 0.01 for h, p in zip(supports, plan.zmp, strict=True))
-    np.testing.assert_allclose(plan.com[[0, -1]], asked[[0, -1], :2], atol=0.03)
-    acceleration = np.gradient(np.gradient(plan.com, 0.01, axis=0), 0.01, axis=0)
-    expected = plan.com - HEIGHT / 9.81 * acceleration
-    np.testing.assert_allclose(plan.zmp[5:-5], expected[5:-5], atol=5e-3)
+def test_a_port_de_bras_stays_on_both_feet() -> None:
+    assert contact_schedule(dance("third-port-de-bras").motion).bears.all()
 
 
-def test_a_shift_that_nobody_can_make_is_said_to_be_one() -> None:
-    far = SQUARE + np.array([3.0, 0.0])
-    plan = plan_weight(TIME, still(0, 0), np.zeros((150, 3)), [SQUARE] * 75 + [far] * 75, MASS)
-    assert plan.outside.max() > 0.05
+@pytest.mark.parametrize("score", MOVING)
+def test_a_toe_stretched_to_the_floor_is_not_stood_on(score: str) -> None:
+    """Somebody always bears; on the counts of the grand battement and développé only one foot."""
+    contacts = contact_schedule(dance(score).motion)
+    bearing = feet(contacts)
+    assert np.all(bearing["left"] | bearing["right"])
+    alone = bearing["left"] ^ bearing["right"]
+    assert 0.3 < alone.mean() < 0.95
+    heights = contacts.points[:, :, 2]
+    assert heights[contacts.bears].max() < ON_FLOOR + 0.02
 
 
-def test_a_moment_moves_the_point_and_not_the_weight() -> None:
-    """Held long enough, L' would need the weight moved; the point shows it at once."""
-    rate = np.zeros((150, 3))
-    rate[:, 1] = 5.0
-    plan = plan_weight(TIME, still(0, 0), rate, [SQUARE] * 150, MASS)
-    acceleration = np.gradient(np.gradient(plan.com[:, 0], 0.01), 0.01)
-    point = plan.com[:, 0] - HEIGHT / 9.81 * acceleration - 5.0 / (MASS * 9.81)
-    np.testing.assert_allclose(plan.zmp[5:-5, 0], point[5:-5], atol=2e-3)
+@pytest.mark.parametrize("score", MOVING)
+def test_contacts_do_not_chatter(score: str) -> None:
+    contacts = contact_schedule(dance(score).motion)
+    for bears in feet(contacts).values():
+        edges = np.flatnonzero(np.diff(bears.astype(int)))
+        assert np.all(np.diff(contacts.time[edges]) > 0.5 * SHORTEST)
 
 
-def test_height_is_changed_no_quicker_than_legs_can() -> None:
-    asked = np.where(TIME < 0.7, 0.95, 0.85)
-    free = plan_height(TIME, asked, np.ones(150, dtype=bool))
-    bend = np.gradient(np.gradient(free, 0.01), 0.01)
-    assert np.abs(bend).max() < 1.01 * LIFT
-    np.testing.assert_allclose(free[[0, -1]], [0.95, 0.85], atol=0.005)
-    flown = 0.9 - 0.5 * 9.81 * (TIME - 0.75) ** 2
-    aloft = plan_height(TIME, flown, np.zeros(150, dtype=bool))
-    np.testing.assert_allclose(aloft, flown, atol=2e-3)
+def zmp_outside(plan: WeightPlan, contacts: ContactSchedule) -> float:
+    """Farthest that the plan's own zero-moment point is outside the support, m, knot by knot."""
+    worst = -np.inf
+    for t, point in zip(plan.time, plan.zmp, strict=True):
+        i = contacts.index(float(t))
+        hull = support_hull(contacts.points[i, contacts.bears[i], :2])
+        worst = max(worst, -margin(hull, point))
+    return worst
 
 
-def test_contacts_of_a_lifted_foot() -> None:
-    plan = plan_contacts(shifting())
-    names = [shifting().model.geom(int(g)).name for g in plan.soles]
-    right = np.array([name.startswith("right") for name in names])
-    assert plan.planted[0].all()
-    assert plan.planted[:, ~right].all()
-    assert not plan.planted[-1, right].any()
-    assert (np.diff(plan.planted[:, right].astype(int), axis=0) <= 0).all()
-    assert np.ptp(plan.places[:, ~right], axis=0).max() < 2e-3
-    assert steps(shifting())
+@pytest.mark.parametrize("score", MOVING)
+def test_the_floor_can_give_what_the_plan_needs(score: str) -> None:
+    made = danceable(score)
+    assert made.weight.outside.max() < 1e-4
+    assert zmp_outside(made.weight, made.contacts) < 1e-4
 
 
-@pytest.mark.parametrize("score", PORTS_DE_BRAS)
-def test_a_port_de_bras_has_no_steps(score: str) -> None:
-    assert not steps(motion(score, "happy"))
+@pytest.mark.parametrize("score", MOVING)
+def test_the_plan_is_a_motion(score: str) -> None:
+    """Velocity and acceleration are those of the place, and it begins and ends at rest."""
+    plan = danceable(score).weight
+    for rows, rates in ((plan.com, plan.velocity), (plan.velocity, plan.acceleration)):
+        moved = np.diff(rows[:, :2], axis=0) * PLAN_RATE
+        mean = 0.5 * (rates[1:, :2] + rates[:-1, :2])
+        jerk = np.abs(np.diff(plan.acceleration[:, :2], axis=0)).max() * PLAN_RATE
+        assert np.abs(moved - mean).max() < jerk / PLAN_RATE**1 / 4
+    for end in (0, -1):
+        assert np.abs(plan.velocity[end, :2]).max() < 1e-6
+        assert np.abs(plan.acceleration[end, :2]).max() < 1e-6
 
 
-def test_feet_stand_where_they_stand() -> None:
-    plan, danced = made().contacts, made().motion
-    model = danced.model
-    data, soles = mujoco.MjData(model), sole_geoms(model)
-    for k in range(0, len(danced.time), 10):
-        data.qpos[:] = danced.qpos[k]
-        mujoco.mj_kinematics(model, data)
-        points = data.geom_xpos[soles] - np.array([0, 0, 1]) * model.geom_size[soles, :1]
-        held = plan.planted[max(k - 15, 0) : k + 15].all(axis=0)
-        assert np.abs(points[held, 2]).max() < 2e-3
-        assert np.abs(points[held, :2] - plan.places[k, held]).max() < 2e-3
-        assert points[:, 2].min() > -3e-3
+def test_who_stands_in_the_middle_stays_there() -> None:
+    motion = standing()
+    plan = plan_weight(motion, contact_schedule(motion))
+    assert plan.shifted.max() < 0.03
+    assert np.ptp(plan.com[:, :2], axis=0).max() < 0.02
 
 
-def test_the_weight_goes_where_it_was_planned() -> None:
-    weight, danced = made().weight, made().motion
-    data = mujoco.MjData(danced.model)
-    assert weight.outside.max() < 2e-3
-    for t, place in zip(weight.time[::20], weight.com[::20], strict=True):
-        data.qpos[:] = danced.sample(float(t))[0]
-        mujoco.mj_kinematics(danced.model, data)
-        mujoco.mj_comPos(danced.model, data)
-        assert np.linalg.norm(data.subtree_com[0, :2] - place) < 4e-3
+@settings(max_examples=15)
+@given(st.floats(0.4, 3.0))
+def test_a_step_too_far_is_said_to_be_one(length: float) -> None:
+    """From one foot to one far away with nothing in between: no floor can do it in no time."""
+    motion = standing(0.6)
+    contacts = contact_schedule(motion)
+    late = contacts.time > 0.3
+    names = [MODEL.geom(int(g)).name for g in contacts.soles]
+    left = np.array([n.startswith("left") for n in names])
+    points = contacts.points.copy()
+    points[:, ~left, 1] -= length
+    bears = np.where(late[:, None], ~left, left)
+    plan = plan_weight(motion, replace(contacts, points=points, bears=bears))
+    assert plan.outside.max() > 0.05 * length
 
 
-def test_what_does_not_bear_moves_as_it_did_and_keeps_its_moments() -> None:
-    danced, asked = made().motion, shifting()
-    assert danced.events == asked.events
-    np.testing.assert_array_equal(danced.time, asked.time)
-    others = np.setdiff1d(np.arange(danced.model.nq), bearing_columns(danced.model))
-    assert np.abs(danced.qpos[:, others] - asked.qpos[:, others]).max() < np.radians(3.0)
-    assert np.abs(danced.qvel[:, 6:]).max() < np.abs(asked.qvel[:, 6:]).max()
+@pytest.mark.parametrize("score", MOVING)
+def test_feet_that_bear_keep_their_places(score: str) -> None:
+    made = danceable(score)
+    before, after = made.contacts, contact_schedule(made.motion)
+    moved = np.linalg.norm(after.points - before.points, axis=2)
+    assert moved[before.bears].max() < 0.001
+
+
+@pytest.mark.parametrize("score", MOVING)
+def test_the_centre_of_mass_follows_the_plan(score: str) -> None:
+    made = danceable(score)
+    data = mujoco.MjData(MODEL)
+    for k in range(0, len(made.weight.time), 5):
+        data.qpos[:] = made.motion.sample(float(made.weight.time[k]))[0]
+        mujoco.mj_kinematics(MODEL, data)
+        mujoco.mj_comPos(MODEL, data)
+        assert np.abs(data.subtree_com[0] - made.weight.com[k])[:2].max() < 0.005
+
+
+@pytest.mark.parametrize("score", MOVING)
+def test_it_is_still_the_same_dance(score: str) -> None:
+    """The same beats; arms as they were; legs within what moving the weight takes."""
+    asked, made = dance(score).motion, danceable(score).motion
+    assert np.array_equal(asked.time, made.time)
+    assert asked.events == made.events
+    names = [MODEL.joint(j).name for j in range(1, MODEL.njnt)]
+    arms = np.array([any(p in n for p in ("shoulder", "elbow", "wrist")) for n in names])
+    apart = np.degrees(np.abs(made.qpos[:, 7:] - asked.qpos[:, 7:]))
+    assert apart[:, arms].max() < 5.0
+    assert apart.max() < 20.0
+
+
+@pytest.mark.parametrize("score", MOVING)
+def test_joints_stay_in_their_ranges(score: str) -> None:
+    made = danceable(score).motion
+    low, high = MODEL.jnt_range[1:].T
+    assert np.all(made.qpos[:, 7:] >= low - np.radians(3.0))
+    assert np.all(made.qpos[:, 7:] <= high + np.radians(3.0))

@@ -1,0 +1,189 @@
+"""`enpointe check`: balance and foot contact of a movement, without dancing it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from enpointe.notation import Score, load_score
+from enpointe.performing import Progress, perform, silent
+
+if TYPE_CHECKING:
+    from enpointe.models import Anthropometry, Style
+    from enpointe.motion import Motion
+    from enpointe.sim.motion_check import MotionCheck
+
+__all__ = ["Check", "check"]
+
+HELP_MAX = 0.05
+"""Of body weight: with more invisible help than this, rms, a movement is not one that can be
+danced."""
+SLIP_MAX, PENETRATION_MAX = 0.01, 0.01
+"""m: a foot that slides or sinks farther shows."""
+BEYOND_MAX = 0.5
+"""Degrees: what the eye forgives a joint beyond its range."""
+
+
+@dataclass(frozen=True)
+class Check:
+    """A movement, and what is to be said of it.
+
+    Attributes:
+        name: Of the movement.
+        found: All that was measured.
+    """
+
+    name: str
+    found: MotionCheck
+
+    @property
+    def faults(self) -> tuple[str, ...]:
+        """What makes the answer no, in words; empty if a body could do this."""
+        found, faults = self.found, []
+        model = found.motion.model
+        weight = float(model.body_mass.sum() * -model.opt.gravity[2])
+        if found.root_wrench_rms > HELP_MAX * weight:
+            share = 100 * found.root_wrench_rms / weight
+            faults.append(f"needs invisible help of {share:.0f} % of body weight, rms")
+        if found.slip_max > SLIP_MAX:
+            faults.append(f"a standing foot slides {1000 * found.slip_max:.0f} mm")
+        if found.penetration_max > PENETRATION_MAX:
+            faults.append(f"sinks {1000 * found.penetration_max:.0f} mm into the floor")
+        worst = [b for b in found.breaches if b.beyond_deg > BEYOND_MAX]
+        if worst:
+            joint = f"{worst[0].joint} is {worst[0].beyond_deg:.1f}° beyond its range"
+            faults.append(joint + (f", and {len(worst) - 1} more joints" if worst[1:] else ""))
+        return tuple(faults)
+
+    def summary(self) -> dict[str, object]:
+        """The figures that `--json` prints, SI units; the names are a promise to scripts."""
+        found = self.found
+        return {
+            "name": self.name,
+            "faults": list(self.faults),
+            "duration": found.motion.duration,
+            "support_margin_min": found.support_margin_min,
+            "zmp_outside_fraction": found.zmp_outside_fraction,
+            "contacts": {
+                side: [{"start": c.start, "end": c.end, "on": str(c.on)} for c in contacts]
+                for side, contacts in found.contacts.items()
+            },
+            "slip_max": found.slip_max,
+            "penetration_max": found.penetration_max,
+            "overlap_max": found.overlap_max,
+            "flights": [
+                {"start": f.start, "end": f.end, "height": f.height, "turn_deg": f.turn_deg}
+                for f in found.flights
+            ],
+            "turns": [
+                {"start": t.start, "end": t.end, "revolutions": t.revolutions} for t in found.turns
+            ],
+            "joint_limit_violations": [
+                {"joint": b.joint, "time": b.time, "beyond_deg": b.beyond_deg}
+                for b in found.breaches
+            ],
+            "root_wrench_rms": found.root_wrench_rms,
+        }
+
+    def lines(self) -> Sequence[tuple[str, str]]:
+        """The same for people: what, and its value in words."""
+        found = self.found
+        outside, margin = found.zmp_outside_fraction, found.support_margin_min
+        rows = [
+            ("movement", f"{self.name}, {found.motion.duration:.2f} s"),
+            ("support margin, least", "never on the floor" if margin is None else _mm(margin)),
+            ("ZMP outside the support", "-" if outside is None else f"{100 * outside:.1f} %"),
+        ]
+        rows += [
+            (f"{side} foot", "; ".join(f"{c.on} {c.start:.2f}–{c.end:.2f} s" for c in contacts))
+            for side, contacts in found.contacts.items()
+        ]
+        rows += [
+            ("slip, most", _mm(found.slip_max)),
+            ("into the floor, most", _mm(found.penetration_max)),
+            ("limbs in one another, most", _mm(found.overlap_max)),
+        ]
+        rows += [
+            ("flight", f"{f.start:.2f}–{f.end:.2f} s, {_mm(f.height)} up, {f.turn_deg:.0f}°")
+            for f in found.flights
+        ]
+        rows += [
+            ("turn", f"{t.start:.2f}–{t.end:.2f} s, {t.revolutions:+.2f} revolutions")
+            for t in found.turns
+        ]
+        rows += [
+            ("beyond its range", f"{b.joint} by {b.beyond_deg:.1f}° at {b.time:.2f} s")
+            for b in found.breaches
+        ]
+        rows.append(("invisible help, rms", f"{found.root_wrench_rms:.1f} N"))
+        rows.append(("answer", "; ".join(self.faults) or "a body could do this"))
+        return [(what, said or "never") for what, said in rows]
+
+
+def _mm(metres: float) -> str:
+    return f"{1000 * metres:.1f} mm"
+
+
+def check(
+    source: str | Path | Score | Motion,
+    *,
+    effort: str | None = None,
+    tempo: float | None = None,
+    style: Style | None = None,
+    dancer: Anthropometry | None = None,
+    progress: Progress = silent,
+) -> Check:
+    """Look at balance and foot contact of a movement of the dancer, without physics.
+
+    Args:
+        source: A motion; a file of one or of a performance (`.npz`, as `enpointe perform` writes
+            them); or a score, whose movement is looked at as it is composed.
+        effort: As for `perform`; of a score alone.
+        tempo: As for `perform`; of a score alone.
+        style: The method's amounts; of a score alone.
+        dancer: Height, mass and sex; a dancer of 1.68 m and 54 kg if None.
+        progress: Told how far it is.
+
+    Raises:
+        FormatError: The file can't be read.
+        EnpointeError: Anything else that the caller can mend, in one line.
+
+    Example:
+        >>> import enpointe
+        >>> enpointe.check("first-port-de-bras").faults
+        ()
+    """
+    if isinstance(source, str | Path) and Path(source).suffix == ".npz":
+        motion = _stored(Path(source), dancer)
+    elif isinstance(source, str | Path | Score):
+        score = source if isinstance(source, Score) else load_score(source)
+        motion = perform(
+            score,
+            effort=effort,
+            tempo=tempo,
+            controller="kinematic",
+            style=style,
+            dancer=dancer,
+            progress=progress,
+        ).motion
+    else:
+        motion = source
+    from enpointe.sim.motion_check import check_motion
+
+    progress("looking", 0, 1)
+    found = check_motion(motion)
+    progress("looking", 1, 1)
+    return Check(motion.name, found)
+
+
+def _stored(path: Path, dancer: Anthropometry | None) -> Motion:
+    from enpointe.controllers import Recording
+    from enpointe.models.dancer import dancer_model
+    from enpointe.motion.npz import is_motion, load_motion
+
+    model = dancer_model(dancer, flesh=False)
+    if is_motion(path):
+        return load_motion(path, model)
+    return Recording.load(path, model).as_motion()

@@ -1,0 +1,107 @@
+"""The floor, drawn: the force under each foot over time, and what each foot stands on."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from enpointe.controllers import Recording
+from enpointe.report.chart import (
+    GREY,
+    INK,
+    LEFT,
+    RIGHT,
+    apart,
+    mark_beats,
+    quiet,
+    thinned,
+    to_svg,
+)
+from enpointe.sim.feet import FootState, foot_states
+from enpointe.sim.measures import Measures
+
+__all__ = ["force_chart"]
+
+Array = NDArray[np.float64]
+_STRENGTH: Mapping[FootState, float] = {
+    FootState.FLAT: 0.3,
+    FootState.DEMI_POINTE: 0.6,
+    FootState.POINTE: 0.95,
+    FootState.HEEL: 0.15,
+}
+"""How strongly a foot's bar is coloured: the more she rises the stronger."""
+_NAMED = 0.055
+"""A bar shorter than this share of the dance is too short for its name."""
+
+
+@quiet
+def force_chart(recording: Recording, measures: Measures, name: str) -> str:
+    """Vertical force under each foot over time with the body's weight, and the feet below it."""
+    figure = Figure(figsize=(8.25, 3.3))
+    axes, strip = figure.subplots(2, 1, sharex=True, height_ratios=(4.2, 1.0))
+    model = recording.model
+    weight = float(model.body_mass.sum() * -model.opt.gravity[2])
+    mark_beats(axes, recording.as_motion().key_events)
+    total = measures.foot_force.sum(axis=1)
+    end = float(recording.time[-1])
+    lines = [
+        ("left foot", measures.foot_force[:, 0], LEFT, "-"),
+        ("right foot", measures.foot_force[:, 1], RIGHT, "-"),
+        ("both", total, INK, "-"),
+    ]
+    for _, force, colour, style in lines:
+        axes.plot(*thinned(recording.time, force), color=colour, linestyle=style, linewidth=1.1)
+    axes.axhline(weight, color=GREY, linewidth=0.8, linestyle="--")
+    axes.text(
+        0.008 * end,
+        0.94 * weight,
+        f"body weight {weight:.0f} N",
+        va="top",
+        color=GREY,
+        fontsize=8,
+    )
+    tail = slice(-max(len(total) // 20, 1), None)
+    highest = 1.12 * max(weight, float(np.percentile(total, 99.9)))
+    heights = apart([float(np.mean(force[tail])) for _, force, _, _ in lines], 0.07 * highest)
+    for (label, _, colour, _), height in zip(lines, heights, strict=True):
+        axes.annotate(
+            label, (end, height), (4, 0), textcoords="offset points", va="center", color=colour
+        )
+    axes.set_xlim(0.0, end)
+    axes.set_ylim(0.0, highest)
+    axes.set_ylabel("up from the floor, N")
+    _draw_feet(strip, recording)
+    strip.set_xlabel("time, s")
+    return to_svg(
+        figure, name, "Vertical force of the floor on each foot over time, and what it stands on"
+    )
+
+
+def _draw_feet(axes: Axes, recording: Recording) -> None:
+    """A bar for each foot, as long as it stands in one way."""
+    forces = np.asarray(recording.channels["sole_force"], dtype=float)
+    states = [foot_states(recording.model, force) for force in forces]
+    end = float(recording.time[-1])
+    sides = (("right", RIGHT), ("left", LEFT))
+    for row, (side, colour) in enumerate(sides):
+        begun = 0
+        for state, stretch in itertools.groupby(state[side] for state in states):
+            start, begun = begun, begun + len(list(stretch))
+            if state is FootState.AIR:
+                continue
+            since, until = (float(recording.time[min(i, len(states) - 1)]) for i in (start, begun))
+            strength = _STRENGTH[state]
+            axes.barh(row, until - since, 0.78, since, color=colour, alpha=strength, linewidth=0.0)
+            if until - since > _NAMED * end * len(state) / len("flat"):
+                ink = "white" if strength > 0.8 else INK
+                middle = 0.5 * (since + until)
+                axes.text(middle, row, state, ha="center", va="center", color=ink, fontsize=7.5)
+    axes.set_ylim(-0.5, 1.5)
+    axes.set_yticks([0, 1], [side for side, _ in sides])
+    axes.tick_params(axis="y", length=0.0)
+    axes.spines["left"].set_visible(False)

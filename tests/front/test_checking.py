@@ -1,0 +1,63 @@
+"""`enpointe check`: files and scores in, figures and an answer out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import enpointe
+from enpointe.cli import _run
+from enpointe.motion import Motion
+from enpointe.motion.npz import save_motion
+
+from .commands import one_object, refused
+
+FIELDS = {
+    "support_margin_min",
+    "zmp_outside_fraction",
+    "contacts",
+    "slip_max",
+    "penetration_max",
+    "flights",
+    "turns",
+    "joint_limit_violations",
+    "root_wrench_rms",
+}
+
+
+def test_a_score_a_motion_and_a_recording_of_it_are_sound(
+    short: Path, home: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    dance = enpointe.perform(enpointe.load_score(short))
+    files = dance.save(home)
+    for source in (short, files["motion"], files["recording"]):
+        assert _run(["check", str(source), "--json"]) == 0
+        figures = one_object(capfd.readouterr().out)
+        assert set(figures) >= FIELDS
+        assert figures["faults"] == []
+        assert figures["joint_limit_violations"] == []
+        assert float(figures["slip_max"]) < 0.005  # type: ignore[arg-type]
+    assert sorted(p.name for p in home.iterdir()) == ["balance.csv", "motion.npz", "recording.npz"]
+
+
+def test_a_movement_nobody_can_do_is_answered_with_no(
+    short: Path, home: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    motion = enpointe.perform(enpointe.load_score(short), controller="kinematic").motion
+    lifted = motion.qpos + np.eye(motion.model.nq)[2]
+    save_motion(Motion.from_qpos(motion.model, motion.time, lifted), home / "lifted.npz")
+    assert _run(["check", "lifted.npz"]) == 1
+    out, err = capfd.readouterr()
+    assert err == ""
+    assert "invisible help" in out
+    assert "never on the floor" in out
+
+
+def test_what_is_no_motion_is_refused(home: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert "no such file" in refused(capfd, "check", "nothing.npz")
+    np.savez(home / "other.npz", format=np.array("a diary"))
+    assert "expected" in refused(capfd, "check", "other.npz")
+    (home / "text.npz").write_text("hello")
+    assert "not an NPZ file" in refused(capfd, "check", "text.npz")
