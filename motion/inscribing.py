@@ -29,7 +29,7 @@ from enpointe.notation.amounts import HEIGHTS, MAX_DEGREES, WIDTHS
 from enpointe.notation.stage import Facing, Turn
 from enpointe.notation.vocabulary import find_pose
 
-__all__ = ["Scribe", "arms_of", "leg_of"]
+__all__ = ["Scribe", "arms_of", "leg_of", "same_position"]
 
 _SAME_SIGN = 0.1
 """Signs that are no farther apart than this, in stave units, are one sign."""
@@ -100,6 +100,17 @@ def leg_of(recognition: Recognition, side: Side) -> Leg:
         assert isinstance(match.position, LegPosition)
         return Leg(match.position, None, None, None)
     return _working(read)
+
+
+def same_position(one: Recognition, other: Recognition) -> bool:
+    """Whether a frame would say of both poses the same, wherever they face."""
+    a, b = one.signs, other.signs
+    parts = ((a.head, b.head), (a.body, b.body), (a.pelvis, b.pelvis))
+    return (
+        _same_arms(arms_of(one), arms_of(other))
+        and all(_same_leg(leg_of(one, side), leg_of(other, side)) for side in Side)
+        and all(_apart(part, another) <= _SAME_DEG for part, another in parts)
+    )
 
 
 def _working(read: ReadLeg) -> Leg:

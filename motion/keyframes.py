@@ -138,6 +138,9 @@ def key_moments(outline: MotionOutline) -> tuple[KeyMoment, ...]:
         for speed in outline.speeds.values():
             if speed[a:b].max() > _LIMB_MOVES:
                 inside += _pauses(speed[a:b], _LIMB_PAUSE)
+        rise = outline.speeds["rise"][a:b]
+        if rise.max() > _LIMB_MOVES:
+            inside += _arrivals(rise, _LIMB_PAUSE)
         moments += _spaced([(float(time[a + i]), depth) for i, depth in inside], start, end)
         moments.append(KeyMoment(end, False, 1.0))
     return tuple(moments)
@@ -158,6 +161,21 @@ def _pauses(speed: Array, below: float, *, ripples: bool = True) -> list[tuple[i
         share = speed[low] / min(speed[before], speed[after])
         if share < below:
             found.append((low, 1.0 - float(share)))
+    return found
+
+
+def _arrivals(speed: Array, below: float) -> list[tuple[int, float]]:
+    """Where a speed first dips to less than a share of the peak before, whatever follows it.
+
+    A dancer who comes down into a plié may glide on in it, so that no peak follows.
+    """
+    peaks, _ = find_peaks(np.concatenate([[0.0], speed, [0.0]]))
+    found = []
+    for before in peaks - 1:
+        dips, _ = find_peaks(-speed[before:])
+        share = speed[before + dips[0]] / speed[before] if len(dips) else 1.0
+        if share < below:
+            found.append((int(before + dips[0]), 1.0 - float(share)))
     return found
 
 

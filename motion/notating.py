@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import zip_longest
 from math import atan2, degrees, hypot
 
 import numpy as np
@@ -18,7 +19,7 @@ from enpointe.models.recognition import Recogniser, Recognition, recogniser_of
 from enpointe.models.stances import StanceTracker
 from enpointe.motion.beats import Pulse, find_pulse, on_the_beat
 from enpointe.motion.in_flight import TOUCH, in_flight, is_position, landed
-from enpointe.motion.inscribing import Scribe
+from enpointe.motion.inscribing import Scribe, same_position
 from enpointe.motion.keyframes import (
     LEAST_SPACING,
     Flight,
@@ -120,7 +121,11 @@ def read_motion(
 def _positions(
     outline: MotionOutline, motion: Motion, recogniser: Recogniser
 ) -> list[tuple[KeyMoment, Recognition]]:
-    """The moments to write, each with its pose: unsure ones only where the pose has a name."""
+    """The moments to write, each with its pose: unsure ones only where the pose has a name.
+
+    Neither are those that say nothing new: a limb that pauses in a position which she has not left,
+    or into which all the rest still settles.
+    """
 
     def pose_at(time: float) -> Recognition:
         pose = recogniser.recognise(motion.sample(time)[0])
@@ -134,7 +139,20 @@ def _positions(
         apart = min(abs(moment.time - other.time) for other, _ in kept)
         if apart >= LEAST_SPACING and (moment.sure or is_position(pose)):
             kept.append((moment, pose))
-    return sorted(kept, key=lambda each: each[0].time)
+    return _without_repeats(sorted(kept, key=lambda each: each[0].time))
+
+
+def _without_repeats(
+    found: Sequence[tuple[KeyMoment, Recognition]],
+) -> list[tuple[KeyMoment, Recognition]]:
+    """The moments without the unsure ones that read as the one before or the sure one after."""
+    kept: list[tuple[KeyMoment, Recognition]] = []
+    for (moment, pose), after in zip_longest(found, found[1:]):
+        settles = after is not None and after[0].sure and same_position(pose, after[1])
+        stays = bool(kept) and same_position(pose, kept[-1][1])
+        if moment.sure or not (settles or stays):
+            kept.append((moment, pose))
+    return kept
 
 
 def _marked(moments: Sequence[KeyMoment]) -> list[float]:

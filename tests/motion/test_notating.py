@@ -42,12 +42,9 @@ WITH_JUMPS = {
     "glissade-jete-assemble": {
         "11/4": "in the air of the temps levé the free foot leaves the ankle",
         "27/4": "the same to the other side",
-        "7/2": "the toe of the dégagé is at the floor as she takes off, as that of a tendu",
-        "15/2": "the same to the other side",
     },
     "grand-jete-en-tournant": {
-        "15/4": "the legs pass each other under a turning body, and neither is pointed down",
-        "31/4": "the same once more",
+        "15/4": "in the air, where nothing pauses, the pose is found a twelfth of a beat early",
     },
 }
 """What is not read back by its name, and why."""
