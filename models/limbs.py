@@ -20,11 +20,16 @@ from enpointe.notation.stage import shorter_way
 __all__ = ["LimbDirections", "orientation"]
 
 Vector = NDArray[np.float64]
-_HIGH = 0.25
-"""A toe this high, m, is one that the pelvis gives way to: the hip alone takes a leg behind to some
-40 degrees (`rules.hip`), which is where this is."""
+_HIGH_DEG = 50.0
+"""A thigh this far from hanging is one that the pelvis gives way to: the hip alone takes a leg
+behind to 40 degrees (`rules.hip`)."""
 _SQUARE_DEG = 6.0
-"""Pelvis and chest that face the same way within this need no decision which of them to believe."""
+"""Pelvis and chest that face the same way within this need no decision which of them to believe, as
+long as neither gives way to a high leg."""
+_ARCHED_DEG = 40.0
+"""A waist bent back by more than this has no more to give: the hinge of ours ends at 45 degrees."""
+_BACK_LENDS_DEG = 30.0
+"""How far the back then comes forward under a leg behind (`rules.stance.BodyLent`)."""
 
 
 @dataclass(frozen=True)
@@ -38,10 +43,12 @@ class LimbDirections:
         shank: The same.
         foot: The same, from the heel to the ball.
         head: Of the head against the torso.
-        body: Of the torso against the pelvis; against the upright where the pelvis is `lent`.
+        body: Of the torso against the pelvis; against the upright where the pelvis is `lent`, and
+            erect but for a turn where the back is lent too.
         pelvis: Of the pelvis against the upright.
         facing_degrees: Where the dancer faces, from the audience, + to her left, -180 to 180.
-        lent: Whether a leg works, so that what the pelvis gives way is the leg's and not written.
+        lent: Whether a leg works, so that what the pelvis gives way is the leg's and not written;
+            nor is what the back comes forward once the waist is bent back as far as it goes.
         feet: How each foot meets the floor.
     """
 
@@ -73,7 +80,6 @@ class LimbDirections:
         facing = _facing(joints, feet)
         upright = Rotation.from_euler("z", facing).as_matrix()
         lent = not all(foot.bears for foot in feet.values())
-        girdle = upright if lent else joints.pelvis
 
         def limb(start: str, end: str, frame: Vector) -> dict[Side, Vector]:
             return {
@@ -88,7 +94,7 @@ class LimbDirections:
             shank=limb("knee", "ankle", upright),
             foot=limb("heel", "ball", upright),
             head=orientation(joints.torso.T @ joints.head),
-            body=orientation(girdle.T @ joints.torso),
+            body=_body(joints, upright if lent else None),
             pelvis=orientation(upright.T @ joints.pelvis),
             facing_degrees=shorter_way(degrees(facing)),
             lent=lent,
@@ -112,21 +118,35 @@ def orientation(rotation: Vector) -> Orientation:
     return Orientation(float(turn), float(-tilt), float(bend))
 
 
+def _body(joints: Joints, upright: Vector | None) -> Orientation:
+    """The torso as a score means it: against the pelvis, or against the upright of a lent one."""
+    waist = orientation(joints.pelvis.T @ joints.torso)
+    if upright is None:
+        return waist
+    body = orientation(upright.T @ joints.torso)
+    if waist.bend < -_ARCHED_DEG and 0.0 < body.bend < _BACK_LENDS_DEG:
+        return Orientation(turn=body.turn)
+    return body
+
+
 def _facing(joints: Joints, feet: Mapping[Side, Footing]) -> float:
     """Where the dancer faces, rad.
 
     The pelvis says it where both feet bear. A dancer opens the pelvis for a high leg and keeps the
-    chest; another one turns the chest over a square pelvis. Where the two disagree, the chest is
-    believed with a leg in the air, and otherwise what agrees with the foot that she stands on.
+    chest, which is then believed; another one turns the chest over a square pelvis. Where the two
+    disagree with a leg that is not high, what agrees with the foot that she stands on is believed.
     """
     pelvis = radians(orientation(joints.pelvis).turn)
     torso = radians(orientation(joints.torso).turn)
     bearing = [side for side in Side if feet[side].bears]
-    if len(bearing) != 1 or abs(shorter_way(degrees(torso - pelvis))) < _SQUARE_DEG:
+    if len(bearing) != 1:
         return pelvis
     (side,) = bearing
-    if feet[side.other].clearance > _HIGH:
+    thigh = joints.between(f"{side.other}_hip", f"{side.other}_knee")
+    if -thigh[2] < np.cos(np.radians(_HIGH_DEG)):
         return torso
+    if abs(shorter_way(degrees(torso - pelvis))) < _SQUARE_DEG:
+        return pelvis
     foot = joints[f"{side}_ball"] - joints[f"{side}_ankle"]
     outward = DEFAULT_TURNOUT_DEG if side is Side.LEFT else -DEFAULT_TURNOUT_DEG
     from_foot = degrees(float(np.arctan2(foot[1], foot[0]))) - outward

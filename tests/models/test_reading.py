@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from enpointe.errors import PoseError
-from enpointe.models import Figure, dancer_model, pose_target
+from enpointe.models import Figure, Style, dancer_model, pose_target
 from enpointe.models.extremities import extremity
 from enpointe.models.joints import Joints
 from enpointe.models.limbs import orientation
@@ -83,6 +83,21 @@ def test_what_was_written_is_read(name: str) -> None:
 def test_all_that_was_written_is_read(name: str, side: Side, real: bool) -> None:
     if solved(name, side, real).held:
         check_read_back(name, side, real)
+
+
+@pytest.mark.parametrize("style", [Style(), Style(real=True)], ids=["perfect", "real"])
+def test_a_written_bend_over_a_leg_behind_is_read(style: Style) -> None:
+    """Only what the back gives way to the leg is not written."""
+    frame = written(
+        "left leg: straight",
+        "right leg: raised derrière 90",
+        "body: bend forward 15",
+        "arms: à la seconde",
+    )
+    solver = solver_of("default")
+    pose = solver.solve(pose_target(frame, solver.figure, style))
+    assert pose.held
+    assert read_signs(solver.model, pose.qpos).body.bend == pytest.approx(15.0, abs=4.0)
 
 
 @pytest.mark.parametrize(
