@@ -53,8 +53,9 @@ to get there; a sole that drags is pushed off its way by friction that nobody pl
 _MUSCLE = 0.2
 """s: the corners at key poses are rounded over this window, wider than the movement's own since
 legs throw more weight about than arms do; the feet that it moves are put back."""
-_KINK = 0.06
-"""s: what is left of kinks where soles come and go."""
+_KINKS = (0.06, 0.032)
+"""s: what is left of kinks where soles come and go, averaged away over these widths one after the
+other; the feet, which that moves by a millimetre or two, are put back in between."""
 _STRAIGHT = 0.3
 """rad: a standing knee bent this much gives way too; one that is straight stays straight."""
 
@@ -88,19 +89,20 @@ def make_danceable(
     soft = Motion.from_qpos(
         motion.model, motion.time, averaged_qpos(motion.qpos, _MUSCLE, rate), name=motion.name
     )
-    reached: Motion | None = None
+    posed = soft
     for height_cost in _HEIGHTS:
-        weight = plan_weight(soft, contacts, reached)
-        posed = _Poser(soft, contacts, weight, height_cost).pose_all(progress)
-        reached = Motion.from_qpos(
-            motion.model,
-            motion.time,
-            averaged_qpos(posed, _KINK, rate),
-            events=motion.events,
-            name=motion.name,
-        )
-    assert reached is not None
-    return Danceable(reached, contacts, weight)
+        weight = plan_weight(soft, contacts, posed)
+        posed = soft
+        for width in _KINKS:
+            qpos = _Poser(posed, contacts, weight, height_cost).pose_all(progress)
+            posed = Motion.from_qpos(
+                motion.model,
+                motion.time,
+                averaged_qpos(qpos, width, rate),
+                events=motion.events,
+                name=motion.name,
+            )
+    return Danceable(posed, contacts, weight)
 
 
 class _Poser:

@@ -95,22 +95,19 @@ class WeightPlan:
         return com, velocity, acceleration
 
 
-def plan_weight(
-    motion: Motion, contacts: ContactSchedule, reached: Motion | None = None
-) -> WeightPlan:
+def plan_weight(motion: Motion, contacts: ContactSchedule, posed: Motion) -> WeightPlan:
     """Plan the centre of mass of a motion.
 
     Args:
         motion: As it was composed, balanced or not.
         contacts: Its schedule.
-        reached: The motion as it was posed over an earlier plan, whose height and angular momentum
-            count instead: what bodies reach is not quite what was asked.
+        posed: The motion itself, or as it was posed over an earlier plan: its height and angular
+            momentum count, as what a body reaches is not quite what was asked.
     """
     time = np.arange(motion.time[0], motion.time[-1] + 0.5 / PLAN_RATE, 1.0 / PLAN_RATE)
-    com, momentum = _centroidal(motion, time)
-    if reached is not None:
-        there, momentum = _centroidal(reached, time)
-        com[:, 2] = there[:, 2]
+    com, _ = _centroidal(motion, time)
+    there, momentum = _centroidal(posed, time)
+    com[:, 2] = there[:, 2]
     sigma = _MOMENTUM_SIGMA * PLAN_RATE
     twist = np.gradient(gaussian_filter1d(momentum, sigma, axis=0), time, axis=0)
     gravity = float(-motion.model.opt.gravity[2])

@@ -111,7 +111,7 @@ class AngularMomentum:
     """
 
     name: ClassVar[str] = "angular momentum"
-    weight: float = 0.001
+    weight: float = 0.02
     gain: float = 5.0
 
     def rows(self, instant: Instant, goal: Goal) -> Rows:

@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from enpointe.controllers import WholeBody, perform
 from enpointe.models import dancer_model
 from enpointe.models.foot_positions import support_hull
 from enpointe.motion import Motion
@@ -18,6 +19,8 @@ from enpointe.motion.contact_schedule import ON_FLOOR, SHORTEST, ContactSchedule
 from enpointe.motion.danceable import Danceable, make_danceable
 from enpointe.motion.weight_plan import PLAN_RATE, WeightPlan, plan_weight
 from enpointe.sim.balance import margin
+from enpointe.sim.body import SimulatedBody
+from enpointe.sim.measures import measure
 
 from .floor import dance
 
@@ -105,7 +108,7 @@ def test_the_plan_is_a_motion(score: str) -> None:
 
 def test_who_stands_in_the_middle_stays_there() -> None:
     motion = standing()
-    plan = plan_weight(motion, contact_schedule(motion))
+    plan = plan_weight(motion, contact_schedule(motion), motion)
     assert plan.shifted.max() < 0.03
     assert np.ptp(plan.com[:, :2], axis=0).max() < 0.02
 
@@ -122,7 +125,7 @@ def test_a_step_too_far_is_said_to_be_one(length: float) -> None:
     points = contacts.points.copy()
     points[:, ~left, 1] -= length
     bears = np.where(late[:, None], ~left, left)
-    plan = plan_weight(motion, replace(contacts, points=points, bears=bears))
+    plan = plan_weight(motion, replace(contacts, points=points, bears=bears), motion)
     assert plan.outside.max() > 0.05 * length
 
 
@@ -164,3 +167,20 @@ def test_joints_stay_in_their_ranges(score: str) -> None:
     low, high = MODEL.jnt_range[1:].T
     assert np.all(made.qpos[:, 7:] >= low - np.radians(3.0))
     assert np.all(made.qpos[:, 7:] <= high + np.radians(3.0))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("score", MOVING)
+def test_it_is_danced_under_gravity(score: str) -> None:
+    """On one leg and on two, on a free root, with the strength that a dancer has."""
+    reference = danceable(score).motion
+    body = SimulatedBody.at_start_of(reference)
+    controller = WholeBody(reference)
+    measures = measure(perform(reference, controller, body))
+    assert measures.fell_at is None
+    assert measures.root_force_max == 0.0
+    assert measures.other_contact_max == 0.0
+    assert controller.workload.failures == 0
+    assert measures.tracking_rms_deg < 1.0
+    assert measures.slip_max < 0.010
+    assert measures.torque_limit_fraction_max <= 1.0 + 1e-9
