@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from enpointe.models import Figure, KeyPose, PoseTarget
+from enpointe.models.contact_geometry import PLATFORM_RISE
 from enpointe.models.foot_positions import Footprint, support_hull
 from enpointe.models.leg_target import (
     FOOT_JOINTS,
@@ -152,9 +153,12 @@ def _ground(data: mujoco.MjData, target: PoseTarget) -> np.ndarray:
     for side, leg in target.legs.items():
         if isinstance(leg, OnPointe):
             ahead, tip = along(leg.footprint), data.site(f"{side}_toe_tip").xpos[:2]
+            middle = tip + PLATFORM_RISE * ahead
             aside = np.array([-ahead[1], ahead[0]])
             long, broad = (0.5 * size for size in PLATFORM)
-            points += [tip + a * long * ahead + b * broad * aside for a in (-1, 1) for b in (-1, 1)]
+            points += [
+                middle + a * long * ahead + b * broad * aside for a in (-1, 1) for b in (-1, 1)
+            ]
         elif isinstance(leg, Standing):
             parts = ("ball", "tip") if leg.rise else ("heel", "ball", "tip")
             points += [data.geom(f"{side}_{p}_{e}").xpos[:2] for p in parts for e in EDGES]

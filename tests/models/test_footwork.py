@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from enpointe.models import KeyPose, Style, pose_target
+from enpointe.models.contact_geometry import PLATFORM_RISE
 from enpointe.models.leg_target import DEMI_POINTE_DEG, OnPointe, Standing
 from enpointe.models.stances import StanceTracker
 from enpointe.notation import Side
@@ -217,12 +218,13 @@ def test_standing_feet_are_turned_out_alike_and_the_hips_are_square(
 
 
 def test_a_footprint_on_pointe_bears_on_its_platform() -> None:
-    """3 x 4 cm round the tip, whichever way the foot faces."""
+    """3 x 4 cm, as far before the tip of the sole as it is above it in a flat foot."""
     target = stood("one foot", "pointe, straight", "perfect").target
     leg = target.legs[Side.LEFT]
     assert isinstance(leg, OnPointe)
-    corners = leg.soles(target.figure)
-    middle = leg.footprint.point(target.figure.ball_forward + target.figure.toe_length)
+    figure = target.figure
+    corners = leg.soles(figure)
+    middle = leg.footprint.point(figure.ball_forward + figure.toe_length + PLATFORM_RISE)
     assert np.allclose(corners.mean(axis=0), middle)
     local = (corners - middle) @ along(leg.footprint)
     assert sorted(np.round(local, 6)) == [-0.015, -0.015, 0.015, 0.015]
