@@ -12,8 +12,9 @@ from enpointe.motion.motion import Motion
 __all__ = ["arrivals", "danced_tempo"]
 
 Array = NDArray[np.float64]
-_NEAR = 0.05
-"""A pose is reached when this share of the way from the pose before is left."""
+_NEAR = 0.1
+"""A pose is reached when this share of the way from the pose before is left: of a short way a body
+under gravity may leave a twentieth undone that it is off its reference anyway."""
 
 
 def arrivals(danced: Motion, asked: Motion) -> Array:
