@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from enpointe.notation import Score, load_score
-from enpointe.performing import Progress, perform, silent
+from enpointe.performing import perform
+from enpointe.preparing import Progress, silent
 
 if TYPE_CHECKING:
     from enpointe.models import Anthropometry, Style

@@ -12,15 +12,8 @@ from numpy.typing import NDArray
 
 from enpointe.figures import ComparisonFigures
 from enpointe.notation import Score, Side, load_score
-from enpointe.performing import (
-    PHRASED,
-    Performance,
-    Progress,
-    dance,
-    has_qualities,
-    prepare,
-    silent,
-)
+from enpointe.performing import PHRASED, Performance, dance, has_qualities
+from enpointe.preparing import Progress, prepare, silent
 
 if TYPE_CHECKING:
     import mujoco

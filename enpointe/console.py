@@ -14,7 +14,7 @@ from rich.console import RenderableType
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from enpointe.performing import Progress as Report
+from enpointe.preparing import Progress as Report
 
 __all__ = ["Console", "rows"]
 

@@ -21,6 +21,8 @@ __all__ = [
     "PosesFigures",
     "RuleFigures",
     "RuleKeptFigures",
+    "SweepFailure",
+    "SweepFigures",
 ]
 
 
@@ -150,3 +152,28 @@ class PosesFigures(TypedDict):
     """The key poses of a score."""
 
     poses: list[PoseFigures]
+
+
+class SweepFailure(TypedDict):
+    """One run of a sweep that was not completed."""
+
+    run: int
+    factors: dict[str, float | None]
+    fell_at: float | None
+    fault: str | None
+
+
+class SweepFigures(TypedDict):
+    """A dance many times over."""
+
+    disturbed_by: list[str]
+    title: str
+    controller: str
+    duration: float
+    seed: int
+    runs: int
+    completed_fraction: float
+    completed_interval: list[float]
+    runs_per_second: float | None
+    root_force_max: float | None
+    failures: list[SweepFailure]

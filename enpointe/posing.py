@@ -11,7 +11,7 @@ from enpointe.errors import EnpointeError
 from enpointe.figures import PosesFigures
 from enpointe.notation import Score, load_score, names, parse_score, shipped_scores
 from enpointe.notation.vocabulary import find_arms, find_feet, find_pose
-from enpointe.performing import check_reach
+from enpointe.preparing import check_reach
 
 if TYPE_CHECKING:
     import mujoco

@@ -16,16 +16,11 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 from enpointe.errors import EnpointeError
+from enpointe.figures import SweepFigures
 from enpointe.files import write_text
 from enpointe.notation import Score, format_score, load_score
-from enpointe.performing import (
-    Progress,
-    has_qualities,
-    model_of,
-    prepare,
-    reference,
-    silent,
-)
+from enpointe.performing import has_qualities, reference
+from enpointe.preparing import Progress, model_of, prepare, silent
 
 if TYPE_CHECKING:
     from enpointe.models import Anthropometry, Style
@@ -81,7 +76,7 @@ class Sweep:
         """Of those danced now; None if all were there already."""
         return self.fresh / self.wall_time if self.fresh else None
 
-    def summary(self) -> dict[str, object]:
+    def summary(self) -> SweepFigures:
         """The figures that `--json` prints, SI units; the names are a promise to scripts."""
         forces = [o.root_force_max for o in self.outcomes if o.root_force_max is not None]
         return {

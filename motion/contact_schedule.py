@@ -104,14 +104,18 @@ def _held_over(planted: Mask, down: Mask) -> Mask:
 
 
 def _stood_on(model: mujoco.MjModel, soles: NDArray[np.int64], planted: Mask) -> Mask:
-    """A foot with its tip alone down is stood on only when no foot is down with more: pointe."""
+    """A foot with its heel up is stood on only when no foot has its heel down.
+
+    So demi-pointe and pointe bear, and a toe stretched to the floor beside a flat foot does not;
+    nor, which is cautious, does a foot that rolls down to the floor until its heel is there.
+    """
     body = model.geom_bodyid[soles]
     parent = model.body_parentid[body]
-    is_tip = np.array(np.isin(parent, body))
-    foot: NDArray[np.int64] = np.where(is_tip, parent, body)
-    broad = np.zeros_like(planted)
+    of_toes = np.array(np.isin(parent, body))
+    foot: NDArray[np.int64] = np.where(of_toes, parent, body)
+    flat = np.zeros_like(planted)
     for one in np.unique(foot):
         mine = np.array(foot == one)
-        broad[:, mine] = np.any(planted[:, mine & ~is_tip], axis=1, keepdims=True)
-    nobody = ~np.any(broad, axis=1, keepdims=True)
-    return np.asarray(planted & (broad | nobody))
+        flat[:, mine] = np.any(planted[:, mine & ~of_toes], axis=1, keepdims=True)
+    nobody = ~np.any(flat, axis=1, keepdims=True)
+    return np.asarray(planted & (flat | nobody))

@@ -10,7 +10,8 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from enpointe.performing import Performance, Progress
+from enpointe.performing import Performance
+from enpointe.preparing import Progress
 from enpointe.report.ground import support_at
 from enpointe.report.pictures import ASPECT, fitted_view
 from enpointe.sim.camera import Overlays, View

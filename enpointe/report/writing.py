@@ -10,8 +10,9 @@ from enpointe.files import atomic_path, write_bytes
 from enpointe.models import KeyPose
 from enpointe.notation import Score
 from enpointe.notation.stave import stave_svg
-from enpointe.performing import Performance, Progress, silent
+from enpointe.performing import Performance
 from enpointe.posing import Poses
+from enpointe.preparing import Progress, silent
 from enpointe.report import words
 from enpointe.report.blocks import Page
 from enpointe.report.films import FilmFile, film_of

@@ -18,7 +18,7 @@ from enpointe.controllers.wholebody.constraints import (
     TorqueLimits,
     joint_torques,
 )
-from enpointe.controllers.wholebody.instant import Instant, skew
+from enpointe.controllers.wholebody.instant import Instant, Observer, skew
 from enpointe.controllers.wholebody.tasks import (
     AngularMomentum,
     CentreOfMass,
@@ -74,9 +74,9 @@ def test_soles_move_as_their_jacobians_say(pose: str, seed: int) -> None:
     np.testing.assert_allclose(here.drifts, drift, atol=1e-4)
 
 
-def _carried(there: object, here: Instant) -> Array:
+def _carried(there: Observer, here: Instant) -> Array:
     """Where the points that are lowest `here` have gone, carried by their bodies."""
-    data, places = there.plant.data, []  # type: ignore[attr-defined]
+    data, places = there.plant.data, []
     start = observed(here.qpos, here.qvel).plant.data
     for geom, point in zip(here.soles, here.points, strict=True):
         body = MODEL.geom_bodyid[geom]
@@ -85,10 +85,10 @@ def _carried(there: object, here: Instant) -> Array:
     return np.array(places)
 
 
-def _speeds(there: object, here: Instant) -> Array:
+def _speeds(there: Observer, here: Instant) -> Array:
     import mujoco
 
-    data = there.plant.data  # type: ignore[attr-defined]
+    data = there.plant.data
     jacobian, speeds = np.zeros((3, MODEL.nv)), []
     for geom, point in zip(here.soles, _carried(there, here), strict=True):
         mujoco.mj_jac(MODEL, data, jacobian, None, point, MODEL.geom_bodyid[geom])

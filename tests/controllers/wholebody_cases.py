@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -66,5 +67,5 @@ def observed(qpos: Array, qvel: Array) -> Observer:
     return observer
 
 
-def driver(pose: str, **options: object) -> WholeBody:
-    return WholeBody(held(pose), **options)  # type: ignore[arg-type]
+def driver(pose: str, **options: Any) -> WholeBody:
+    return WholeBody(held(pose), **options)

@@ -346,7 +346,7 @@ def test_fields_of_a_sweep() -> None:
     swept = enpointe.Sweep("T", 1.0, "pd", Disturbances.parse(None), 0, (fallen,), 1, 1.0)
     figures = swept.summary()
     assert set(figures) == fields("sweep")
-    assert set(figures["failures"][0]["factors"]) == fields("factors")  # type: ignore[index]
+    assert set(figures["failures"][0]["factors"]) == fields("factors")
 
 
 @pytest.mark.slow

@@ -7,6 +7,7 @@ import re
 import sys
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import pytest
 
@@ -30,14 +31,14 @@ FAULTS = [pytest.param(f, id=f"{f.section}: {f.fault}") for f in made.FAULTS]
 
 
 @pytest.mark.parametrize("fault", FAULTS)
-def test_a_fault_is_cured(fault: made.Fault) -> None:  # type: ignore[name-defined]
+def test_a_fault_is_cured(fault: Any) -> None:
     pose = made.solved(fault.pose, fault.real)
     assert pose.held, str(pose.certificate)
     assert fault.least <= fault.measured(pose) <= fault.most
 
 
 @pytest.mark.parametrize("fault", FAULTS)
-def test_a_fault_that_is_made_is_noticed(fault: made.Fault) -> None:  # type: ignore[name-defined]
+def test_a_fault_that_is_made_is_noticed(fault: Any) -> None:
     """By its rule, and where no rule answers for it by the measure."""
     wrong = made.put_wrong(fault)
     assert not wrong.held

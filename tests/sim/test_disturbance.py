@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.random import SeedSequence
 
-from enpointe.controllers import PD, perform
+from enpointe.controllers import PD, Command, perform
 from enpointe.errors import EnpointeError
 from enpointe.models.soles import sole_geoms
 from enpointe.sim.body import SimulatedBody
@@ -186,9 +186,9 @@ def test_the_push_that_was_asked_for_is_no_help() -> None:
 def test_any_other_force_on_the_root_shows(monkeypatch: pytest.MonkeyPatch) -> None:
     write = DisturbedBody.write
 
-    def helped(self: DisturbedBody, command: object) -> None:
+    def helped(self: DisturbedBody, command: Command) -> None:
         self.data.qfrc_applied[2] = 7.0
-        write(self, command)  # type: ignore[arg-type]
+        write(self, command)
 
     monkeypatch.setattr(DisturbedBody, "write", helped)
     assert trial("push=3").run(1).root_force_max == pytest.approx(7.0)
