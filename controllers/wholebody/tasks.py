@@ -76,7 +76,7 @@ class CentreOfMass:
     """
 
     name: ClassVar[str] = "centre of mass"
-    weight: float = 300.0
+    weight: float = 1000.0
     capture_gain: float = 5.0
     stiffness: float = 300.0
     damping: float = 35.0
@@ -111,7 +111,7 @@ class AngularMomentum:
     """
 
     name: ClassVar[str] = "angular momentum"
-    weight: float = 0.02
+    weight: float = 0.05
     gain: float = 5.0
 
     def rows(self, instant: Instant, goal: Goal) -> Rows:
@@ -165,7 +165,7 @@ class Orientation:
     """
 
     name: ClassVar[str] = "orientation"
-    weight: float = 2.0
+    weight: float = 1.0
     weight_aloft: float = 0.04
     stiffness: float = 200.0
     damping: float = 28.0
