@@ -15,13 +15,14 @@ from functools import cached_property
 from typing import TypeVar
 
 import numpy as np
-import qpsolvers
 from numpy.typing import NDArray
 
-from enpointe.controllers.wholebody.constraints import Bounds, Constraint, Equality, Limits
+from enpointe.controllers.wholebody.constraints import Constraint
 from enpointe.controllers.wholebody.goal import Goal
 from enpointe.controllers.wholebody.instant import Instant
-from enpointe.controllers.wholebody.tasks import Rows, Task
+from enpointe.controllers.wholebody.programme import Programme
+from enpointe.controllers.wholebody.rows import Bounds, Direct, Equality, Limits, Rows
+from enpointe.controllers.wholebody.tasks import Task
 
 __all__ = ["WholeBodyProblem"]
 
@@ -44,7 +45,7 @@ class WholeBodyProblem:
     """
 
     instant: Instant
-    rows: Mapping[str, Rows]
+    rows: Mapping[str, Rows | Direct]
     limits: Mapping[str, Equality | Limits | Bounds]
 
     @classmethod
@@ -63,61 +64,85 @@ class WholeBodyProblem:
         )
 
     @cached_property
-    def programme(self) -> qpsolvers.Problem:
-        """The same as matrices P, q, G, h, A, b, lb, ub of  min x'Px/2 + q'x."""
+    def cost(self) -> tuple[Array, Array]:
+        """Hessian (n, n) and gradient (n,) at zero of half the cost."""
         n = self.instant.size
-        matrix = np.vstack([r.matrix for r in self.rows.values()])
-        target = np.concatenate([r.target for r in self.rows.values()])
-        weighted = matrix * np.concatenate([r.weight for r in self.rows.values()])[:, None]
-        hessian = weighted.T @ matrix
-        hessian[np.arange(n), np.arange(n)] += REGULARISATION
+        hessian, gradient = np.zeros((n, n)), np.zeros(n)
+        diagonal = hessian.reshape(-1)[:: n + 1]
+        diagonal += REGULARISATION
+        blocks: dict[tuple[int, int], list[Rows]] = {}
+        for rows in self.rows.values():
+            if isinstance(rows, Direct):
+                diagonal[rows.columns] += rows.weight
+                gradient[rows.columns] -= rows.weight * rows.target
+            else:
+                blocks.setdefault(rows.columns.indices(n)[:2], []).append(rows)
+        for (first, end), block in blocks.items():
+            root = np.sqrt(np.concatenate([r.weight for r in block]))
+            matrix = np.concatenate([r.matrix for r in block]) * root[:, None]
+            target = np.concatenate([r.target for r in block]) * root
+            hessian[first:end, first:end] += matrix.T @ matrix
+            gradient[first:end] -= target @ matrix
+        return hessian, gradient
+
+    @cached_property
+    def programme(self) -> Programme:
+        """The same as matrices."""
+        return self._written(self._of(Limits))
+
+    @cached_property
+    def relaxed(self) -> Programme:
+        """The programme without its two-sided rows, which seldom bind."""
+        return self._written([]) if self._of(Limits) else self.programme
+
+    def _written(self, sided: Sequence[Limits]) -> Programme:
+        n, equal = self.instant.size, self._of(Equality)
         low, high = np.full(n, -np.inf), np.full(n, np.inf)
         for bounds in self._of(Bounds):
             np.maximum(low, bounds.low, out=low)
             np.minimum(high, bounds.high, out=high)
-        sided, equal = self._of(Limits), self._of(Equality)
-        return qpsolvers.Problem(
-            hessian,
-            -(target @ weighted),
-            np.vstack([np.vstack([s.matrix, -s.matrix]) for s in sided]) if sided else None,
-            np.concatenate([np.concatenate([s.high, -s.low]) for s in sided]) if sided else None,
-            np.vstack([e.matrix for e in equal]) if equal else None,
-            np.concatenate([e.target for e in equal]) if equal else None,
-            low,
-            high,
+        targets = [e.target for e in equal]
+        matrices = [np.empty((0, n)), *(e.matrix for e in equal), *(s.matrix for s in sided)]
+        return Programme(
+            *self.cost,
+            np.concatenate(matrices),
+            np.concatenate([low, *targets, *(s.low for s in sided)]),
+            np.concatenate([high, *targets, *(s.high for s in sided)]),
+            sum(len(target) for target in targets),
         )
 
     def _of(self, kind: type[_Kind]) -> list[_Kind]:
         return [limit for limit in self.limits.values() if isinstance(limit, kind)]
 
-    def solve(self, solver: str = "daqp") -> Array | None:
+    def solve(self) -> Array | None:
         """The unknowns (n,), or None where the constraints leave no solution.
 
-        What a solver returns is believed only after a look at its constraints.
+        The two-sided rows are left out at first. A solution that keeps them all the same is the
+        best of a larger set and so the best of the smaller one; where it doesn't, they are put in
+        and the whole is solved. What a solver returns is believed only after a look at all
+        constraints.
         """
-        solution = qpsolvers.solve_problem(self.programme, solver)
-        if not solution.found or solution.x is None or not np.all(np.isfinite(solution.x)):
+        unknowns = self.relaxed.solve()
+        if unknowns is not None and any(_outside(s, unknowns) > 0.0 for s in self._of(Limits)):
+            unknowns = self.programme.solve()
+        if unknowns is None or self.violation(unknowns) >= TOLERANCE:
             return None
-        unknowns = np.asarray(solution.x)
-        return unknowns if self.violation(unknowns) < TOLERANCE else None
+        return unknowns
 
     def violation(self, unknowns: Array) -> float:
         """The largest amount by which any constraint is broken: N, N m, rad/s^2."""
-        worst = 0.0
-        for limit in self.limits.values():
-            if isinstance(limit, Bounds):
-                low, high, value = limit.low, limit.high, unknowns
-            else:
-                value = limit.matrix @ unknowns
-                low, high = (
-                    (limit.target, limit.target)
-                    if isinstance(limit, Equality)
-                    else (limit.low, limit.high)
-                )
-            outside = np.maximum(low - value, value - high)
-            worst = max(worst, float(outside.max(initial=0.0)))
-        return worst
+        return max((_outside(limit, unknowns) for limit in self.limits.values()), default=0.0)
 
     def errors(self, unknowns: Array) -> dict[str, Array]:
         """What each task is left with, A x - b, in its own unit."""
-        return {name: r.matrix @ unknowns - r.target for name, r in self.rows.items()}
+        return {name: rows.error(unknowns) for name, rows in self.rows.items()}
+
+
+def _outside(limit: Equality | Limits | Bounds, unknowns: Array) -> float:
+    """The largest amount by which one constraint is broken, 0 if by none."""
+    if isinstance(limit, Equality):
+        outside = np.abs(limit.matrix @ unknowns - limit.target)
+    else:
+        value = unknowns if isinstance(limit, Bounds) else limit.matrix @ unknowns
+        outside = np.maximum(limit.low - value, value - limit.high)
+    return float(outside.max(initial=0.0))
