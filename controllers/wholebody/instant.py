@@ -205,17 +205,16 @@ class Observer:
         and a column of J is the first with a motion axis for (omega, v).
         """
         data, count = self.plant.data, len(points)
+        velocity, acceleration = data.cvel[self._bodies], data.cacc[self._bodies]
+        arms = points - data.subtree_com[self._roots]
+        crosses = skew(np.concatenate([-arms, velocity[:, :3]]))
         shift = np.empty((count, 3, 6))
-        shift[:, :, :3] = -skew(points - data.subtree_com[self._roots])
-        shift[:, :, 3:] = _ONE
+        shift[:, :, :3], shift[:, :, 3:] = crosses[:count], _ONE
         jacobians = (shift.reshape(-1, 6) @ data.cdof.T).reshape(count, 3, -1) * self._carries
-        spatial = np.empty((count, 6, 2))
-        spatial[:, :, 0], spatial[:, :, 1] = data.cvel[self._bodies], data.cacc[self._bodies]
-        carried = shift @ spatial
-        velocities = carried[:, :, 0]
-        turning = (skew(spatial[:, :3, 0]) @ velocities[:, :, None])[:, :, 0]
+        velocities = shift @ velocity[:, :, None]
+        drifts = shift @ acceleration[:, :, None] + crosses[count:] @ velocities
         # MuJoCo lets the world rise at -g instead of pulling the bodies down.
-        return jacobians, velocities, carried[:, :, 1] + turning + self.model.opt.gravity
+        return jacobians, velocities[:, :, 0], drifts[:, :, 0] + self.model.opt.gravity
 
 
 def _carries(model: mujoco.MjModel, bodies: Indices) -> Array:

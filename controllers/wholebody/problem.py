@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from enpointe.controllers.wholebody.constraints import Constraint
+from enpointe.controllers.wholebody.elimination import Cost, eliminated
 from enpointe.controllers.wholebody.goal import Goal
 from enpointe.controllers.wholebody.instant import Instant
 from enpointe.controllers.wholebody.programme import Programme
@@ -64,52 +65,85 @@ class WholeBodyProblem:
         )
 
     @cached_property
-    def cost(self) -> tuple[Array, Array]:
-        """Hessian (n, n) and gradient (n,) at zero of half the cost."""
+    def cost(self) -> Cost:
+        """Half of what is minimised, less its value at zero."""
+        return self._quadratic(0, self.instant.size)
+
+    @cached_property
+    def separate(self) -> tuple[Cost, Cost] | None:
+        """The cost of accelerations and that of forces; None if a task speaks of both at once."""
+        nv, n = self.instant.nv, self.instant.size
+        if any(first < nv < end for first, end in self._blocks):
+            return None
+        return self._quadratic(0, nv), self._quadratic(nv, n)
+
+    @cached_property
+    def bounds(self) -> Bounds:
+        """All bounds on the unknowns together."""
         n = self.instant.size
-        hessian, gradient = np.zeros((n, n)), np.zeros(n)
-        diagonal = hessian.reshape(-1)[:: n + 1]
-        diagonal += REGULARISATION
-        blocks: dict[tuple[int, int], list[Rows]] = {}
-        for rows in self.rows.values():
-            if isinstance(rows, Direct):
-                diagonal[rows.columns] += rows.weight
-                gradient[rows.columns] -= rows.weight * rows.target
-            else:
-                blocks.setdefault(rows.columns.indices(n)[:2], []).append(rows)
-        for (first, end), block in blocks.items():
-            root = np.sqrt(np.concatenate([r.weight for r in block]))
-            matrix = np.concatenate([r.matrix for r in block]) * root[:, None]
-            target = np.concatenate([r.target for r in block]) * root
-            hessian[first:end, first:end] += matrix.T @ matrix
-            gradient[first:end] -= target @ matrix
-        return hessian, gradient
-
-    @cached_property
-    def programme(self) -> Programme:
-        """The same as matrices."""
-        return self._written(self._of(Limits))
-
-    @cached_property
-    def relaxed(self) -> Programme:
-        """The programme without its two-sided rows, which seldom bind."""
-        return self._written([]) if self._of(Limits) else self.programme
-
-    def _written(self, sided: Sequence[Limits]) -> Programme:
-        n, equal = self.instant.size, self._of(Equality)
         low, high = np.full(n, -np.inf), np.full(n, np.inf)
         for bounds in self._of(Bounds):
             np.maximum(low, bounds.low, out=low)
             np.minimum(high, bounds.high, out=high)
-        targets = [e.target for e in equal]
-        matrices = [np.empty((0, n)), *(e.matrix for e in equal), *(s.matrix for s in sided)]
+        return Bounds(low, high)
+
+    @cached_property
+    def equality(self) -> Equality:
+        """All rows that must be met."""
+        equal = self._of(Equality)
+        if len(equal) == 1:
+            return equal[0]
+        matrices = [np.empty((0, self.instant.size)), *(e.matrix for e in equal)]
+        return Equality(np.concatenate(matrices), np.concatenate([[], *(e.target for e in equal)]))
+
+    @cached_property
+    def programme(self) -> Programme:
+        """The whole as matrices."""
+        (low, high), equal, sided = self.bounds, self.equality, self._of(Limits)
         return Programme(
             *self.cost,
-            np.concatenate(matrices),
-            np.concatenate([low, *targets, *(s.low for s in sided)]),
-            np.concatenate([high, *targets, *(s.high for s in sided)]),
-            sum(len(target) for target in targets),
+            np.concatenate([equal.matrix, *(s.matrix for s in sided)]),
+            np.concatenate([low, equal.target, *(s.low for s in sided)]),
+            np.concatenate([high, equal.target, *(s.high for s in sided)]),
+            len(equal.target),
         )
+
+    @cached_property
+    def _blocks(self) -> dict[tuple[int, int], list[Rows]]:
+        """Tasks by the range of unknowns that they speak of."""
+        blocks: dict[tuple[int, int], list[Rows]] = {}
+        for rows in self.rows.values():
+            if isinstance(rows, Rows) and len(rows.target):
+                first, end, _ = rows.columns.indices(self.instant.size)
+                blocks.setdefault((first, end), []).append(rows)
+        return blocks
+
+    @cached_property
+    def _direct(self) -> tuple[Array, Array]:
+        """What wishes for unknowns themselves add to the diagonal and to the gradient, (n,)."""
+        n = self.instant.size
+        diagonal, gradient = np.full(n, REGULARISATION), np.zeros(n)
+        for rows in self.rows.values():
+            if isinstance(rows, Direct):
+                diagonal[rows.columns] += rows.weight
+                gradient[rows.columns] -= rows.weight * rows.target
+        return diagonal, gradient
+
+    def _quadratic(self, start: int, stop: int) -> Cost:
+        """The cost of the unknowns from `start` to `stop`, of tasks that speak of no others."""
+        n = stop - start
+        diagonal, slope = self._direct
+        hessian, gradient = np.zeros((n, n)), slope[start:stop].copy()
+        hessian.reshape(-1)[:: n + 1] = diagonal[start:stop]
+        for (first, end), block in self._blocks.items():
+            if start <= first and end <= stop:
+                here = slice(first - start, end - start)
+                root = np.sqrt(np.concatenate([r.weight for r in block]))
+                matrix = np.concatenate([r.matrix for r in block]) * root[:, None]
+                target = np.concatenate([r.target for r in block]) * root
+                hessian[here, here] += matrix.T @ matrix
+                gradient[here] -= target @ matrix
+        return Cost(hessian, gradient)
 
     def _of(self, kind: type[_Kind]) -> list[_Kind]:
         return [limit for limit in self.limits.values() if isinstance(limit, kind)]
@@ -117,17 +151,29 @@ class WholeBodyProblem:
     def solve(self) -> Array | None:
         """The unknowns (n,), or None where the constraints leave no solution.
 
-        The two-sided rows are left out at first. A solution that keeps them all the same is the
-        best of a larger set and so the best of the smaller one; where it doesn't, they are put in
-        and the whole is solved. What a solver returns is believed only after a look at all
-        constraints.
+        Limits on accelerations and torques are left out at first. A solution that keeps them all
+        the same is the best of a larger set and so the best of the smaller one; where it doesn't,
+        the whole is solved. What a solver returns is believed only after a look at all constraints.
         """
-        unknowns = self.relaxed.solve()
-        if unknowns is not None and any(_outside(s, unknowns) > 0.0 for s in self._of(Limits)):
+        unknowns = self._easy()
+        if unknowns is None:
             unknowns = self.programme.solve()
         if unknowns is None or self.violation(unknowns) >= TOLERANCE:
             return None
         return unknowns
+
+    def _easy(self) -> Array | None:
+        """The solution if no acceleration and no torque is at its limit."""
+        if self.separate is None:
+            return None
+        nv, (low, high) = self.instant.nv, self.bounds
+        unknowns = eliminated(*self.separate, self.equality, low[nv:], high[nv:])
+        if unknowns is None:
+            return None
+        accelerations = Bounds(low[:nv], high[:nv])
+        if _outside(accelerations, unknowns[:nv]) > 0.0:
+            return None
+        return None if any(_outside(s, unknowns) > 0.0 for s in self._of(Limits)) else unknowns
 
     def violation(self, unknowns: Array) -> float:
         """The largest amount by which any constraint is broken: N, N m, rad/s^2."""
