@@ -72,7 +72,7 @@ def contacts_kept(recording: Recording) -> ContactsKept:
     planned_count, missed, unplanned = 0, [], []
     for side in SIDES:
         mine = sides == side
-        planned: Mask = bears[:, mine].any(axis=1)
+        planned = np.asarray(bears[:, mine].any(axis=1))
         load = force[:, mine].sum(axis=1)
         for span in _spans(planned):
             planned_count += 1
