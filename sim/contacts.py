@@ -52,17 +52,18 @@ class ContactReader:
             mujoco.mj_contactForce(self._model, data, i, wrench)
         # The axes of a contact's frame are its rows; the first points from first to second geom.
         forces = (wrenches[:, None, :3] @ contacts.frame.reshape(-1, 3, 3))[:, 0]
-        pairs, distances = contacts.geom.tolist(), contacts.dist.tolist()
-        for i, (first, second) in enumerate(pairs):
+        rows, signs, on_floor = [], [], []
+        for i, (first, second) in enumerate(contacts.geom.tolist()):
             row = self._sole_row(first, second)
             if row is None:
                 self._meet(first, second, wrenches[i])
-                continue
-            if first in self._floors:
-                self._force[row] += forces[i]
             else:
-                self._force[row] -= forces[i]
-            self._depth[row] = max(-distances[i], 0.0)
+                rows.append(row)
+                signs.append(1.0 if first in self._floors else -1.0)
+                on_floor.append(i)
+        if rows:
+            np.add.at(self._force, rows, np.array(signs)[:, None] * forces[on_floor])
+            self._depth[rows] = np.maximum(-contacts.dist[on_floor], 0.0)
 
     def _meet(self, first: int, second: int, wrench: NDArray[np.float64]) -> None:
         """Note a contact that is no sole on the floor."""
