@@ -36,6 +36,7 @@ class ContactReader:
         self._others = 0
         self._other_force = 0.0
         self.lies = False
+        self._sort([])
 
     def read(self, data: mujoco.MjData) -> None:
         """Take the contacts of `data`, right after a step."""
@@ -52,17 +53,25 @@ class ContactReader:
             mujoco.mj_contactForce(self._model, data, i, wrench)
         # The axes of a contact's frame are its rows; the first points from first to second geom.
         forces = (wrenches[:, None, :3] @ contacts.frame.reshape(-1, 3, 3))[:, 0]
-        pairs, distances = contacts.geom.tolist(), contacts.dist.tolist()
-        for i, (first, second) in enumerate(pairs):
-            row = self._sole_row(first, second)
-            if row is None:
-                self._meet(first, second, wrenches[i])
-                continue
-            if first in self._floors:
-                self._force[row] += forces[i]
-            else:
-                self._force[row] -= forces[i]
-            self._depth[row] = max(-distances[i], 0.0)
+        pairs = contacts.geom.tolist()
+        if pairs != self._pairs:
+            self._sort(pairs)
+        for i in self._elsewhere:
+            self._meet(*pairs[i], wrenches[i])
+        if len(self._bearing):
+            np.add.at(self._force, self._rows, self._signs * forces[self._bearing])
+            self._depth[self._rows] = np.maximum(-contacts.dist[self._bearing], 0.0)
+
+    def _sort(self, pairs: list[list[int]]) -> None:
+        """Tell soles on the floor from the rest; from step to step the pairs hardly change."""
+        rows = [self._sole_row(first, second) for first, second in pairs]
+        bearing = [i for i, row in enumerate(rows) if row is not None]
+        signs = [1.0 if pairs[i][0] in self._floors else -1.0 for i in bearing]
+        self._pairs = pairs
+        self._elsewhere = [i for i, row in enumerate(rows) if row is None]
+        self._bearing = np.array(bearing, dtype=np.int64)
+        self._rows = np.array([row for row in rows if row is not None], dtype=np.int64)
+        self._signs = np.array(signs).reshape(-1, 1)
 
     def _meet(self, first: int, second: int, wrench: NDArray[np.float64]) -> None:
         """Note a contact that is no sole on the floor."""

@@ -115,9 +115,10 @@ class JointRange:
     def limits(self, instant: Instant) -> Bounds:
         ahead = self.horizon
         q, v = instant.qpos[self.angles], instant.qvel[self.dofs]
-        drift = q + v * ahead
-        high = np.minimum(2 * (self.high - drift) / ahead**2, (self.speed - v) / ahead)
-        low = np.maximum(2 * (self.low - drift) / ahead**2, (-self.speed - v) / ahead)
+        drift, scale = q + v * ahead, 2.0 / ahead**2
+        fastest, slowing = self.speed / ahead, v / ahead
+        high = np.minimum(scale * (self.high - drift), fastest - slowing)
+        low = np.maximum(scale * (self.low - drift), -fastest - slowing)
         crossed = low > high
         if crossed.any():
             middle = 0.5 * (self.low + self.high)

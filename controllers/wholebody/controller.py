@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from time import perf_counter
@@ -174,7 +175,7 @@ class WholeBody:
         return WholeBodyProblem.build(instant, goal.shifted(shift), self.tasks, self.constraints)
 
     def _obey(self, instant: Instant, unknowns: Array) -> Command:
-        dt, keep = self._period, np.exp(-self._period / TONE_MEMORY)
+        dt, keep = self._period, math.exp(-self._period / TONE_MEMORY)
         acceleration = unknowns[self._dofs]
         angle, speed = instant.qpos[self._angles], instant.qvel[self._dofs]
         velocity = speed + keep * (self._velocity - speed)

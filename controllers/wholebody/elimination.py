@@ -59,22 +59,23 @@ def eliminated(
     if rows == 0:
         return None
     on_accelerations, on_forces = tie.matrix[:, :count], tie.matrix[:, count:]
-    right = np.concatenate([on_accelerations.T, -accelerations.gradient[:, None]], axis=1)
+    right = np.empty((count, rows + 1), order="F")
+    right[:, :rows], right[:, rows] = on_accelerations.T, -accelerations.gradient
     _, solved, indefinite = lapack.dposv(accelerations.hessian, right)
     ways, free = solved[:, :rows], solved[:, rows]
-    factor, dependent = lapack.dpotrf(on_accelerations @ ways, lower=1)
+    error = tie.target - on_accelerations @ free
+    # dposv twice and no triangular solver: OpenBLAS gives even the smallest of those to its
+    # threads, and where they have no core of their own, 0.1 ms become 10.
+    right = np.concatenate([on_forces, error[:, None]], axis=1)
+    _, solved, dependent = lapack.dposv(on_accelerations @ ways, right)
     if indefinite or dependent:
         return None
-    error = tie.target - on_accelerations @ free
-    halves, _ = lapack.dtrtrs(factor, np.concatenate([on_forces, error[:, None]], axis=1), lower=1)
-    spread, error = halves[:, :-1], halves[:, -1]
-    edges = _within(
-        Cost(forces.hessian + spread.T @ spread, forces.gradient - error @ spread), low, high
-    )
+    spread, pull = solved[:, :-1], solved[:, -1]
+    left = Cost(forces.hessian + on_forces.T @ spread, forces.gradient - pull @ on_forces)
+    edges = _within(left, low, high)
     if edges is None:
         return None
-    pull, _ = lapack.dtrtrs(factor, error - spread @ edges, lower=1, trans=1)
-    return np.concatenate([free + ways @ pull, edges])
+    return np.concatenate([free + ways @ (pull - spread @ edges), edges])
 
 
 def _within(cost: Cost, low: Array, high: Array) -> Array | None:

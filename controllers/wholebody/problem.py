@@ -138,11 +138,10 @@ class WholeBodyProblem:
         for (first, end), block in self._blocks.items():
             if start <= first and end <= stop:
                 here = slice(first - start, end - start)
-                root = np.sqrt(np.concatenate([r.weight for r in block]))
-                matrix = np.concatenate([r.matrix for r in block]) * root[:, None]
-                target = np.concatenate([r.target for r in block]) * root
-                hessian[here, here] += matrix.T @ matrix
-                gradient[here] -= target @ matrix
+                matrix = np.concatenate([r.matrix for r in block])
+                weighted = matrix * np.concatenate([r.weight for r in block])[:, None]
+                hessian[here, here] += weighted.T @ matrix
+                gradient[here] -= np.concatenate([r.target for r in block]) @ weighted
         return Cost(hessian, gradient)
 
     def _of(self, kind: type[_Kind]) -> list[_Kind]:
@@ -155,14 +154,14 @@ class WholeBodyProblem:
         the same is the best of a larger set and so the best of the smaller one; where it doesn't,
         the whole is solved. What a solver returns is believed only after a look at all constraints.
         """
-        unknowns = self._easy()
+        unknowns = self._eased()
         if unknowns is None:
             unknowns = self.programme.solve()
-        if unknowns is None or self.violation(unknowns) >= TOLERANCE:
-            return None
+            if unknowns is not None and self.violation(unknowns) >= TOLERANCE:
+                return None
         return unknowns
 
-    def _easy(self) -> Array | None:
+    def _eased(self) -> Array | None:
         """The solution if no acceleration and no torque is at its limit."""
         if self.separate is None:
             return None
@@ -170,10 +169,12 @@ class WholeBodyProblem:
         unknowns = eliminated(*self.separate, self.equality, low[nv:], high[nv:])
         if unknowns is None:
             return None
-        accelerations = Bounds(low[:nv], high[:nv])
-        if _outside(accelerations, unknowns[:nv]) > 0.0:
-            return None
-        return None if any(_outside(s, unknowns) > 0.0 for s in self._of(Limits)) else unknowns
+        allowed = np.zeros(len(unknowns))
+        allowed[nv:] = TOLERANCE
+        kept = bool(np.all((unknowns >= low - allowed) & (unknowns <= high + allowed)))
+        kept = kept and _outside(self.equality, unknowns) < TOLERANCE
+        kept = kept and all(_outside(sided, unknowns) == 0.0 for sided in self._of(Limits))
+        return unknowns if kept else None
 
     def violation(self, unknowns: Array) -> float:
         """The largest amount by which any constraint is broken: N, N m, rad/s^2."""
