@@ -91,7 +91,6 @@ class WeightPlan:
         jerk = (self.acceleration[i + 1] - a) * PLAN_RATE
         com = c + dt * v + dt**2 / 2 * a + dt**3 / 6 * jerk
         return com, v + dt * a + dt**2 / 2 * jerk, a + dt * jerk
-        return com, velocity, acceleration
 
 
 def plan_weight(motion: Motion, contacts: ContactSchedule, posed: Motion) -> WeightPlan:

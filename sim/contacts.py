@@ -27,6 +27,7 @@ class ContactReader:
     def __init__(self, model: mujoco.MjModel) -> None:
         self._model = model
         self.soles = Plant(model).sole_geoms
+        self._radius = np.array(model.geom_size[self.soles, 0])
         self._row = {int(geom): i for i, geom in enumerate(self.soles)}
         self._floors = set(np.flatnonzero(model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE).tolist())
         self._force = np.zeros((len(self.soles), 3))
@@ -41,26 +42,34 @@ class ContactReader:
         self._force[:] = 0.0
         self._depth[:] = 0.0
         self._point[:] = data.geom_xpos[self.soles]
-        self._point[:, 2] -= self._model.geom_size[self.soles, 0]
+        self._point[:, 2] -= self._radius
         self._others, self._other_force = 0, 0.0
         self.lies = False
-        wrench = np.zeros(6)
         # The contacts' fields as whole arrays: one by one they cost more than the physics.
         contacts = data.contact
-        pairs, frames = contacts.geom.tolist(), contacts.frame.reshape(-1, 3, 3)
-        for i, (first, second) in enumerate(pairs):
+        wrenches = np.zeros((data.ncon, 6))
+        for i, wrench in enumerate(wrenches):
             mujoco.mj_contactForce(self._model, data, i, wrench)
+        # The axes of a contact's frame are its rows; the first points from first to second geom.
+        forces = (wrenches[:, None, :3] @ contacts.frame.reshape(-1, 3, 3))[:, 0]
+        pairs, distances = contacts.geom.tolist(), contacts.dist.tolist()
+        for i, (first, second) in enumerate(pairs):
             row = self._sole_row(first, second)
             if row is None:
-                self._others += int(wrench[0] > 0.0)
-                floored = first in self._floors or second in self._floors
-                self.lies = self.lies or (floored and wrench[0] > 0.0)
-                self._other_force = max(self._other_force, float(np.linalg.norm(wrench[:3])))
+                self._meet(first, second, wrenches[i])
                 continue
-            # The contact frame's first axis points from the first geom to the second.
-            sign = 1.0 if first in self._floors else -1.0
-            self._force[row] += sign * frames[i].T @ wrench[:3]
-            self._depth[row] = max(-float(contacts.dist[i]), 0.0)
+            if first in self._floors:
+                self._force[row] += forces[i]
+            else:
+                self._force[row] -= forces[i]
+            self._depth[row] = max(-distances[i], 0.0)
+
+    def _meet(self, first: int, second: int, wrench: NDArray[np.float64]) -> None:
+        """Note a contact that is no sole on the floor."""
+        bears = bool(wrench[0] > 0.0)
+        self._others += int(bears)
+        self.lies = self.lies or (bears and (first in self._floors or second in self._floors))
+        self._other_force = max(self._other_force, float(np.linalg.norm(wrench[:3])))
 
     def observed(self) -> dict[str, NDArray[np.generic]]:
         """Channels of one sample.

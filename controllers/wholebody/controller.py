@@ -152,7 +152,7 @@ class WholeBody:
         """Solve for this period."""
         start = perf_counter()
         self.problem = self.build(t, state)
-        self.problem.programme  # noqa: B018
+        self.problem.separate  # noqa: B018
         built = perf_counter()
         self.unknowns = self.problem.solve()
         solved = perf_counter()
