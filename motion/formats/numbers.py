@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["BLOCK", "Tokens", "blocks", "parsed", "tokens"]
+__all__ = ["BLOCK", "Spelled", "Tokens", "blocks", "parsed", "tokens"]
 
 BLOCK = 1 << 18
 """Bytes looked at together: what comes of them still fits a processor's cache."""
@@ -59,14 +59,47 @@ class Tokens:
 
     def text(self, index: int) -> str:
         """One word."""
-        return self.data[self.starts[index] : self.ends[index]].tobytes().decode("latin-1")
+        return self.data[self.starts[index] : self.ends[index]].tobytes().decode("ascii", "replace")
 
-    def are(self, indices: NDArray[np.intp], word: bytes) -> bool:
-        """Whether the words at some places are all this one."""
-        starts = self.starts[indices]
-        if not (self.ends[indices] - starts == len(word)).all():
+    def are(self, chosen: NDArray[np.intp], words: Spelled, which: NDArray[np.intp]) -> bool:
+        """Whether each chosen word is spelled like the one of `words` that `which` names."""
+        starts = self.starts[chosen]
+        if not np.array_equal(self.ends[chosen] - starts, words.lengths[which]):
             return False
-        return all((self.data[starts + i] == byte).all() for i, byte in enumerate(word))
+        at_each = _words_at(self.data)
+        for part in range(words.letters.shape[1]):
+            here = np.minimum(starts + _WORD * part, len(at_each) - 1)
+            same = at_each[here] & words.masks[which, part] == words.letters[which, part]
+            if not same.all():
+                return False
+        return True
+
+
+@dataclass(frozen=True)
+class Spelled:
+    """Words as numbers of eight letters each, to be compared many at once.
+
+    Attributes:
+        lengths: (N,), letters of each word.
+        letters: (N, parts), eight of a word's letters each, the rest 0.
+        masks: (N, parts), which of the eight are the word's.
+    """
+
+    lengths: NDArray[np.intp]
+    letters: NDArray[np.uint64]
+    masks: NDArray[np.uint64]
+
+    @classmethod
+    def of(cls, words: list[bytes]) -> Spelled:
+        """Spells words."""
+        parts = 1 + max(map(len, words), default=0) // _WORD
+        padded = [word.ljust(parts * _WORD, b"\0") for word in words]
+        masks = [(b"\xff" * len(word)).ljust(parts * _WORD, b"\0") for word in words]
+        return cls(
+            np.array([len(word) for word in words], np.intp),
+            np.frombuffer(b"".join(padded), "<u8").reshape(-1, parts),
+            np.frombuffer(b"".join(masks), "<u8").reshape(-1, parts),
+        )
 
 
 def blocks(data: bytes, start: int = 0) -> Iterator[bytes]:
@@ -116,15 +149,30 @@ def parsed(
     fits &= upper_good & lower_good & (values < _EXACT)
     values /= power
     np.negative(values, out=values, where=negative)
-    for index in np.flatnonzero(~fits):
-        word = words.data[starts[index] : ends[index]].tobytes()
-        try:
-            values[index] = float(word) if b"_" not in word else np.nan
-        except ValueError:
-            values[index] = np.nan
-        if not np.isfinite(values[index]):
-            return values, int(index)
-    return values, None
+    odd = np.flatnonzero(~fits)
+    if not len(odd):
+        return values, None
+    values[odd], bad = _one_by_one(words.data.tobytes(), starts[odd], ends[odd])
+    return values, None if bad is None else int(odd[bad])
+
+
+def _one_by_one(
+    data: bytes, starts: NDArray[np.intp], ends: NDArray[np.intp]
+) -> tuple[NDArray[np.float64], int | None]:
+    """Words through `float`, and the place of the first that is no finite number."""
+    words = [data[start:end] for start, end in zip(starts.tolist(), ends.tolist(), strict=True)]
+    values = np.full(len(words), np.nan)
+    try:
+        values[:] = list(map(float, words))
+    except ValueError:
+        for index, word in enumerate(words):
+            try:
+                values[index] = float(word)
+            except ValueError:
+                break
+    values[[b"_" in word for word in words]] = np.nan
+    bad = np.flatnonzero(~np.isfinite(values))
+    return values, int(bad[0]) if len(bad) else None
 
 
 def _points(
@@ -140,14 +188,18 @@ def _points(
     return np.where((following >= starts) & (following < ends), following, ends)
 
 
+def _words_at(data: NDArray[np.uint8]) -> NDArray[np.uint64]:
+    """The eight bytes from each byte on, as one number, without a copy."""
+    return np.lib.stride_tricks.as_strided(
+        data[:_WORD].view("<u8"), (len(data) - _WORD + 1,), (1,), writeable=False
+    )
+
+
 def _digits(
     data: NDArray[np.uint8], ends: NDArray[np.intp], count: NDArray[np.intp]
 ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     """The integers that the `count` characters before `ends` are, and where they are digits."""
-    at_each = np.lib.stride_tricks.as_strided(
-        data[:_WORD].view("<u8"), (len(data) - _WORD + 1,), (1,), writeable=False
-    )
-    word = at_each[ends - _WORD]
+    word = _words_at(data)[ends - _WORD]
     word &= _LAST[count]
     word |= _FILL[count]
     word ^= _ZEROS

@@ -5,6 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from enpointe.errors import EnpointeError, FormatError
+from enpointe.motion.formats.amc import AMC
+from enpointe.motion.formats.asf import ASF
+from enpointe.motion.formats.bvh import BVH
 from enpointe.motion.formats.content import Content, Format, Payload
 
 __all__ = ["FORMATS", "formats", "read", "sniffed", "write"]
@@ -12,7 +15,11 @@ __all__ = ["FORMATS", "formats", "read", "sniffed", "write"]
 _HEAD = 4096
 
 # One line a format; where a file could be two, the earlier is taken.
-FORMATS: tuple[Format, ...] = ()
+FORMATS: tuple[Format, ...] = (
+    BVH,
+    AMC,
+    ASF,
+)
 
 
 def formats() -> tuple[Format, ...]:

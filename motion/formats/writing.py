@@ -1,0 +1,74 @@
+"""What writers of text files share: numbers that read back the same, and files whole or not."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from enpointe.errors import FormatError
+from enpointe.files import atomic_path
+from enpointe.motion.formats.content import Payload
+from enpointe.motion.formats.skeleton import SkeletonMotion
+
+__all__ = ["number_lines", "one_word", "skeleton_of", "unheld", "write_lines"]
+
+
+# Notes that only keep the digits in which a file writes what the movement has anyway.
+_ONLY_DIGITS = ("bone ", "id of ", "length of ", "Frame Time")
+
+
+def skeleton_of(payload: Payload, path: Path, name: str) -> SkeletonMotion:
+    """The payload where it is a skeleton's movement with at least one frame.
+
+    Raises:
+        FormatError: It is a set of markers, or has no frame.
+    """
+    if not isinstance(payload, SkeletonMotion):
+        raise FormatError(f"{name} holds a skeleton's movement, and these are markers", path)
+    if not payload.frames:
+        raise FormatError("there is no frame to write", path)
+    return payload
+
+
+def number_lines(values: NDArray[np.float64], path: Path) -> Iterator[str]:
+    """Rows as text, each number in the fewest digits that read back the same.
+
+    Raises:
+        FormatError: A number that is not finite, with its frame.
+    """
+    if not np.isfinite(values).all():
+        row = int(np.flatnonzero(~np.isfinite(values).all(axis=1))[0])
+        raise FormatError(f"frame {row} (from 0) has a value that is no finite number", path)
+    return (" ".join(map(repr, row.tolist())) for row in values)
+
+
+def write_lines(path: Path, *parts: Iterable[str]) -> None:
+    """Writes lines to a file, whole or not at all.
+
+    Raises:
+        EnpointeError: The file can't be written there.
+    """
+    with atomic_path(path) as beside, beside.open("w", encoding="utf-8", newline="\n") as file:
+        for part in parts:
+            file.writelines(line + "\n" for line in part)
+
+
+def one_word(name: str) -> str:
+    """A name as a file of words between blanks can hold it."""
+    return re.sub(r"[\s{}#]+", "_", name.strip()) or "joint"
+
+
+def unheld(motion: SkeletonMotion, used: Iterable[str], first: int) -> tuple[str, ...]:
+    """What of a movement's notes and counting falls in a format that counts from `first`."""
+    lost = []
+    if motion.start != first:
+        lost.append(f"the number of the first frame, {motion.start}")
+    kept = set(used)
+    others = [key for key in motion.notes if key not in kept and not key.startswith(_ONLY_DIGITS)]
+    if others:
+        lost.append(f"notes: {', '.join(others)}")
+    return tuple(lost)
