@@ -29,7 +29,15 @@ from enpointe.motion.formats.text import (
 )
 from enpointe.motion.formats.tree import Node, parsed_tree, unlike
 from enpointe.motion.formats.units import guessed_unit
-from enpointe.motion.formats.writing import number_lines, one_word, skeleton_of, unheld, write_lines
+from enpointe.motion.formats.writing import (
+    END_SITE,
+    hierarchy_lines,
+    number_lines,
+    one_word,
+    skeleton_of,
+    unheld,
+    write_lines,
+)
 
 __all__ = ["BVH"]
 
@@ -37,7 +45,6 @@ _BEGINS = re.compile(rb"^[ \t]*HIERARCHY\b", re.IGNORECASE | re.MULTILINE)
 _MOTION = re.compile(rb"^[ \t]*MOTION\b", re.IGNORECASE | re.MULTILINE)
 _SETTING = re.compile(r"\s*(frames|frame\s*time)\s*:?\s*(.*?)\s*$", re.IGNORECASE)
 _TIME = "Frame Time"
-_END = "end site "
 
 
 def _sniff(head: bytes) -> bool:
@@ -62,7 +69,7 @@ def _read(path: Path) -> Content:
     values, repairs = _frames(raw, start, line, width, declared, path)
     unit, guess = guessed_unit(joints)
     notes = {_TIME: time} | {
-        f"{_END}{joint.name} {number}": name
+        f"{END_SITE}{joint.name} {number}": name
         for joint, node in zip(joints, nodes, strict=True)
         for number, name in enumerate(node.end_names)
         if name.lower() != "site"
@@ -180,10 +187,10 @@ def _write(payload: Payload, path: Path) -> tuple[str, ...]:
         motion, lost = plain(motion)
         skeleton = motion.skeleton
     names, renamed = unlike([one_word(joint.name) for joint in skeleton.joints])
-    lines = [*_hierarchy(skeleton, names, motion.notes), "MOTION", f"Frames: {motion.frames}"]
+    lines = [*hierarchy_lines(skeleton, names, motion.notes), "MOTION", f"Frames: {motion.frames}"]
     lines.append(f"{_TIME}: {_time(motion)}")
     write_lines(path, lines, number_lines(motion.values, path))
-    used = [_TIME, *(key for key in motion.notes if key.startswith(_END))]
+    used = [_TIME, *(key for key in motion.notes if key.startswith(END_SITE))]
     lost += unheld(motion, used, first=0)
     if names != [joint.name for joint in skeleton.joints]:
         lost += ("blanks, braces and doubles in names", *renamed)
@@ -210,36 +217,6 @@ def _time(motion: SkeletonMotion) -> str:
     except (ValueError, ZeroDivisionError):
         kept = False
     return written if kept else repr(1 / motion.rate)
-
-
-def _hierarchy(skeleton: Skeleton, names: list[str], notes: dict[str, str]) -> list[str]:
-    """The tree, written without recursion: chains may be long."""
-    lines = ["HIERARCHY"]
-    open_joints: list[int] = []
-
-    def close(until: int) -> None:
-        while open_joints and open_joints[-1] != until:
-            lines.append("\t" * (len(open_joints) - 1) + "}")
-            open_joints.pop()
-
-    for index, joint in enumerate(skeleton.joints):
-        close(joint.parent)
-        tabs = "\t" * len(open_joints)
-        lines += [f"{tabs}{'JOINT' if open_joints else 'ROOT'} {names[index]}", f"{tabs}{{"]
-        lines.append(f"{tabs}\tOFFSET {_three(joint.offset)}")
-        if joint.channels:
-            lines.append(f"{tabs}\tCHANNELS {len(joint.channels)} {' '.join(joint.channels)}")
-        for number, end in enumerate(joint.ends):
-            name = notes.get(f"{_END}{joint.name} {number}", "Site")
-            lines += [f"{tabs}\tEnd {name}", f"{tabs}\t{{", f"{tabs}\t\tOFFSET {_three(end)}"]
-            lines.append(f"{tabs}\t}}")
-        open_joints.append(index)
-    close(-1)
-    return lines
-
-
-def _three(vector: tuple[float, float, float]) -> str:
-    return " ".join(repr(value) for value in vector)
 
 
 BVH = Format("BVH", (".bvh",), "skeleton", _sniff, _read, _write)

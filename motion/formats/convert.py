@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from enpointe.motion.formats.skeleton import IDENTITY, Joint, Skeleton, SkeletonMotion
 from enpointe.motion.formats.space import DEGREES, Space
 
-__all__ = ["depth_first", "flat", "is_flat", "plain", "y_up"]
+__all__ = ["angles_of", "depth_first", "flat", "is_flat", "plain", "upright", "y_up"]
 
 Array = NDArray[np.float64]
 _POSITIONS = ("Xposition", "Yposition", "Zposition")
@@ -67,13 +67,36 @@ def flat(motion: SkeletonMotion, order: str = "ZXY") -> SkeletonMotion:
     channels = (*_POSITIONS, *(f"{axis}rotation" for axis in "XYZ"))
     joints, columns = [], []
     for index, joint in enumerate(motion.skeleton.joints):
-        angles = _euler(Rotation.from_quat(rotations[:, index], scalar_first=True), order)
+        angles = angles_of(Rotation.from_quat(rotations[:, index], scalar_first=True), order)
         angles = angles[:, [order.index(axis) for axis in "XYZ"]]
         angles /= motion.skeleton.space.radians_per_unit
         columns += [places[:, index], angles]
         joints.append(Joint(joint.name, -1, channels=channels, order=order, ends=joint.ends))
     skeleton = Skeleton(tuple(joints), motion.skeleton.space)
     return replace(motion, skeleton=skeleton, values=np.concatenate(columns, axis=1))
+
+
+def upright(motion: SkeletonMotion) -> tuple[SkeletonMotion, tuple[str, ...]]:
+    """A flat movement with y up, and what of it falls."""
+    skeleton = motion.skeleton
+    turned = y_up(skeleton.space)
+    if _is_none(turned):
+        return motion, ()
+    unit = skeleton.space.radians_per_unit
+    columns = []
+    _, rotations = motion.local()
+    for index, joint in enumerate(skeleton.joints):
+        own = motion.values[:, skeleton.columns(index)].copy()
+        own[:, :3] = turned.apply(own[:, :3])
+        turns = turned * Rotation.from_quat(rotations[:, index], scalar_first=True) * turned.inv()
+        angles = angles_of(turns, joint.product)[:, [joint.product.index(axis) for axis in "XYZ"]]
+        own[:, 3:6] = angles / unit
+        columns.append(own)
+    space = Space(skeleton.space.metres_per_unit, radians_per_unit=unit)
+    lost = (f"{skeleton.space.up} as the upward axis (it is y now)",)
+    turned_skeleton = replace(skeleton, space=space)
+    values = np.concatenate(columns, axis=1)
+    return replace(motion, skeleton=turned_skeleton, values=values), lost
 
 
 def is_flat(skeleton: Skeleton, order: str) -> bool:
@@ -155,14 +178,14 @@ def _angles(
     if not joint.turning and np.allclose(turns.magnitude(), 0, atol=1e-15):
         return "", np.empty((motion.frames, 0))
     order = joint.product if len(set(joint.product)) == 3 else "ZXY"
-    return order, np.degrees(_euler(turns, order))
+    return order, np.degrees(angles_of(turns, order))
 
 
-def _euler(turns: Rotation, order: str) -> Array:
+def angles_of(turns: Rotation, order: str) -> Array:
     """(T, 3) angles, rad, of R = R_first @ R_second @ R_third, without a break at the pole."""
     i, j, k = ("XYZ".index(axis) for axis in order)
     sign = 1.0 if (j - i) % 3 == 1 else -1.0
-    matrix = turns.as_matrix()
+    matrix = turns.as_matrix().reshape(-1, 3, 3)
     cosine = np.hypot(matrix[:, i, i], matrix[:, i, j])
     middle = np.arctan2(sign * matrix[:, i, k], cosine)
     first = np.arctan2(-sign * matrix[:, j, k], matrix[:, k, k])

@@ -7,8 +7,11 @@ from pathlib import Path
 from enpointe.errors import EnpointeError, FormatError
 from enpointe.motion.formats.amc import AMC
 from enpointe.motion.formats.asf import ASF
+from enpointe.motion.formats.ask import ASK
+from enpointe.motion.formats.bva import BVA
 from enpointe.motion.formats.bvh import BVH
 from enpointe.motion.formats.content import Content, Format, Payload
+from enpointe.motion.formats.htr import GTR, HTR
 
 __all__ = ["FORMATS", "formats", "read", "sniffed", "write"]
 
@@ -17,8 +20,12 @@ _HEAD = 4096
 # One line a format; where a file could be two, the earlier is taken.
 FORMATS: tuple[Format, ...] = (
     BVH,
+    ASK,
     AMC,
     ASF,
+    BVA,
+    HTR,
+    GTR,
 )
 
 

@@ -12,10 +12,21 @@ from numpy.typing import NDArray
 from enpointe.errors import FormatError
 from enpointe.files import atomic_path
 from enpointe.motion.formats.content import Payload
-from enpointe.motion.formats.skeleton import SkeletonMotion
+from enpointe.motion.formats.skeleton import Skeleton, SkeletonMotion
 
-__all__ = ["number_lines", "one_word", "skeleton_of", "unheld", "write_lines"]
+__all__ = [
+    "END_SITE",
+    "hierarchy_lines",
+    "number_lines",
+    "one_word",
+    "skeleton_of",
+    "unheld",
+    "write_lines",
+]
 
+
+END_SITE = "end site "
+"""Before a joint's name and a number, the note with what a file calls an end site."""
 
 # Notes that only keep the digits in which a file writes what the movement has anyway.
 _ONLY_DIGITS = ("bone ", "id of ", "length of ", "Frame Time")
@@ -72,3 +83,39 @@ def unheld(motion: SkeletonMotion, used: Iterable[str], first: int) -> tuple[str
     if others:
         lost.append(f"notes: {', '.join(others)}")
     return tuple(lost)
+
+
+def hierarchy_lines(skeleton: Skeleton, names: list[str], notes: dict[str, str]) -> list[str]:
+    """The tree of BVH and ASK, without recursion: chains may be long.
+
+    Args:
+        skeleton: Joints depth first.
+        names: One a joint, in one word each.
+        notes: Names of end sites, where they are others than "Site".
+    """
+    lines = ["HIERARCHY"]
+    open_joints: list[int] = []
+
+    def close(until: int) -> None:
+        while open_joints and open_joints[-1] != until:
+            lines.append("\t" * (len(open_joints) - 1) + "}")
+            open_joints.pop()
+
+    for index, joint in enumerate(skeleton.joints):
+        close(joint.parent)
+        tabs = "\t" * len(open_joints)
+        lines += [f"{tabs}{'JOINT' if open_joints else 'ROOT'} {names[index]}", f"{tabs}{{"]
+        lines.append(f"{tabs}\tOFFSET {_three(joint.offset)}")
+        if joint.channels:
+            lines.append(f"{tabs}\tCHANNELS {len(joint.channels)} {' '.join(joint.channels)}")
+        for number, end in enumerate(joint.ends):
+            name = notes.get(f"{END_SITE}{joint.name} {number}", "Site")
+            lines += [f"{tabs}\tEnd {name}", f"{tabs}\t{{", f"{tabs}\t\tOFFSET {_three(end)}"]
+            lines.append(f"{tabs}\t}}")
+        open_joints.append(index)
+    close(-1)
+    return lines
+
+
+def _three(vector: tuple[float, float, float]) -> str:
+    return " ".join(repr(value) for value in vector)
