@@ -16,12 +16,13 @@ from enpointe.motion.formats.skeleton import IDENTITY, Joint, Skeleton, Skeleton
 from enpointe.motion.formats.space import DEGREES
 from enpointe.motion.formats.tree import Vector, unlike
 from enpointe.motion.formats.units import INCH
-from enpointe.motion.formats.writing import one_word
+from enpointe.motion.formats.writing import note_numbers, one_word
 
 __all__ = ["as_figure", "asf_lines", "held"]
 
 _ROOT = "root"
 _NONE = (0.0, 0.0, 0.0)
+_UNIT = ":units length"
 _POSITIONS = ("Xposition", "Yposition", "Zposition")
 
 
@@ -167,7 +168,7 @@ def asf_lines(motion: SkeletonMotion) -> Iterator[str]:
     yield f":name {notes.get(':name', 'enpointe')}"
     yield ":units"
     yield f"  mass {notes.get(':units mass', '1.0')}"
-    yield f"  length {_length(skeleton.space.metres_per_unit, notes)}"
+    yield f"  length {_length(motion)}"
     yield f"  angle {own_angle}"
     for key, text in notes.items():
         if key.startswith(":") and " " not in key and key not in (":version", ":name", ":amc"):
@@ -229,14 +230,16 @@ def _bone(
 
 def _same(words: list[str], reach: Vector, joint: Joint, angle: float) -> bool:
     """Whether the words of a note still say what the joint is."""
+    letters = "".join(words[7:]).upper() or "XYZ"
     try:
-        x, y, z, length = (float(word) for word in words[:4])
-        axis = words[4:] or ["0", "0", "0", "XYZ"]
-        a, b, c = (float(word) for word in axis[:3])
-        letters = "".join(axis[3:]).upper() or "XYZ"
-        kept = axis_quaternion((a, b, c), letters, angle) == joint.axis
-    except (ValueError, IndexError):
+        numbers = [float(word) for word in words[:7]]
+    except ValueError:
         return False
+    if len(numbers) not in (4, 7) or sorted(letters) != ["X", "Y", "Z"]:
+        return False
+    x, y, z, length, *turns = numbers
+    a, b, c = turns or _NONE
+    kept = axis_quaternion((a, b, c), letters, angle) == joint.axis
     return kept and (x * length, y * length, z * length) == reach
 
 
@@ -256,9 +259,11 @@ def _axis(joint: Joint, angle: float) -> Vector:
     return float(x), float(y), float(z)
 
 
-def _length(unit: float, notes: dict[str, str]) -> str:
-    written = notes.get(":units length", "1")
-    return written if INCH / float(written) == unit else repr(INCH / unit)
+def _length(motion: SkeletonMotion) -> str:
+    """Inches over this are the unit."""
+    unit, written = motion.skeleton.space.metres_per_unit, note_numbers(motion, _UNIT)
+    kept = len(written) == 1 and written[0] > 0 and INCH / written[0] == unit
+    return motion.notes[_UNIT] if kept else repr(INCH / unit)
 
 
 def _dof(joint: Joint) -> str:

@@ -22,6 +22,7 @@ from enpointe.motion.formats.tree import Node, Vector, parsed_tree, unlike
 from enpointe.motion.formats.units import guessed_unit
 from enpointe.motion.formats.writing import (
     hierarchy_lines,
+    note_numbers,
     one_word,
     skeleton_of,
     unheld,
@@ -83,7 +84,7 @@ def _write(payload: Payload, path: Path) -> tuple[str, ...]:
     joints = []
     for joint in skeleton.joints:
         above = places[joint.parent] if joint.parent >= 0 else (0.0, 0.0, 0.0)
-        place, ends = _written(joint, above, motion.notes.get(f"{_NOTE}{joint.name}", ""))
+        place, ends = _written(joint, above, note_numbers(motion, f"{_NOTE}{joint.name}"))
         places.append(place)
         joints.append(Joint(joint.name, joint.parent, place, ends=ends))
     names, renamed = unlike([one_word(joint.name) for joint in joints])
@@ -92,9 +93,10 @@ def _write(payload: Payload, path: Path) -> tuple[str, ...]:
     return (*lost, *renamed, *unheld(motion, (), first=0))
 
 
-def _written(joint: Joint, above: Vector, note: str) -> tuple[Vector, tuple[Vector, ...]]:
+def _written(
+    joint: Joint, above: Vector, numbers: list[float]
+) -> tuple[Vector, tuple[Vector, ...]]:
     """Where a joint and its ends stand, in the digits of the file that it came from."""
-    numbers = [float(word) for word in note.split()] if note else []
     if len(numbers) == 3 + 3 * len(joint.ends):
         vectors = [(x, y, z) for x, y, z in np.reshape(numbers, (-1, 3)).tolist()]
         place, ends = vectors[0], tuple(vectors[1:])

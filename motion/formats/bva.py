@@ -29,7 +29,14 @@ from enpointe.motion.formats.text import (
 )
 from enpointe.motion.formats.tree import unlike
 from enpointe.motion.formats.units import INCH
-from enpointe.motion.formats.writing import number_lines, skeleton_of, unheld, write_lines
+from enpointe.motion.formats.writing import (
+    FRAME_TIME,
+    frame_time,
+    number_lines,
+    skeleton_of,
+    unheld,
+    write_lines,
+)
 
 __all__ = ["BVA"]
 
@@ -52,7 +59,6 @@ _METRES = {
 }
 _RADIANS = {**dict.fromkeys(("DEGREES", "DEGREE", "DEG"), DEGREES), "RADIANS": 1.0}
 _NAMES = {INCH: "INCHES", 1.0: "METERS", 0.01: "CENTIMETERS", 0.001: "MILLIMETERS"}
-_TIME = "Frame Time"
 
 
 @dataclass
@@ -90,7 +96,7 @@ def _read(path: Path) -> Content:
     metres, radians = reader.units(first)
     values = np.concatenate([segment.values for segment in segments], axis=1)
     skeleton = Skeleton(joints, Space(metres, radians_per_unit=radians))
-    notes = {_TIME: first.time}
+    notes = {FRAME_TIME: first.time}
     motion = SkeletonMotion(skeleton, 1 / float(first.time), values, notes=notes)
     return Content(motion, (*warnings, *reader.warnings))
 
@@ -125,8 +131,8 @@ class _Reader:
             raise self.error("a segment needs a name", line)
         declared = whole_number(self.setting("frames"), self.path, self.at, "Frames")
         time = self.setting("frametime")
-        if not 1e-6 <= finite_number(time, self.path, self.at, _TIME) <= 1e6:
-            raise self.error(f"{_TIME} must be seconds above 0, got {time[:40]!r}", self.at)
+        if not 1e-6 <= finite_number(time, self.path, self.at, FRAME_TIME) <= 1e6:
+            raise self.error(f"{FRAME_TIME} must be seconds above 0, got {time[:40]!r}", self.at)
         channels = self.columns()
         units = tuple(word.upper() for word in self.words())
         if len(units) != len(channels):
@@ -200,20 +206,18 @@ def _write(payload: Payload, path: Path) -> tuple[str, ...]:
     skeleton = motion.skeleton
     unit = _NAMES[skeleton.space.metres_per_unit]
     angle = "RADIANS" if skeleton.space.radians_per_unit == 1.0 else "DEGREES"
-    time = motion.notes.get(_TIME, "")
-    if not time or 1 / float(time) != motion.rate:
-        time = repr(1 / motion.rate)
+    time = frame_time(motion)
     rows: list[str] = []
     for index, joint in enumerate(skeleton.joints):
         rows.append(f"Segment: {joint.name}")
-        rows += [f"Frames: {motion.frames}", f"{_TIME}: {time}"]
+        rows += [f"Frames: {motion.frames}", f"{FRAME_TIME}: {time}"]
         rows.append(" ".join(_SHORT[channel] for channel in joint.channels))
         rows.append(
             " ".join(angle if channel.endswith("rotation") else unit for channel in joint.channels)
         )
         rows += number_lines(motion.values[:, skeleton.columns(index)], path)
     write_lines(path, rows)
-    return (*lost, *unheld(motion, [_TIME], first=0))
+    return (*lost, *unheld(motion, [FRAME_TIME], first=0))
 
 
 def _fits(skeleton: Skeleton) -> bool:

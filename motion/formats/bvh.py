@@ -31,6 +31,8 @@ from enpointe.motion.formats.tree import Node, parsed_tree, unlike
 from enpointe.motion.formats.units import guessed_unit
 from enpointe.motion.formats.writing import (
     END_SITE,
+    FRAME_TIME,
+    frame_time,
     hierarchy_lines,
     number_lines,
     one_word,
@@ -44,7 +46,6 @@ __all__ = ["BVH"]
 _BEGINS = re.compile(rb"^[ \t]*HIERARCHY\b", re.IGNORECASE | re.MULTILINE)
 _MOTION = re.compile(rb"^[ \t]*MOTION\b", re.IGNORECASE | re.MULTILINE)
 _SETTING = re.compile(r"\s*(frames|frame\s*time)\s*:?\s*(.*?)\s*$", re.IGNORECASE)
-_TIME = "Frame Time"
 
 
 def _sniff(head: bytes) -> bool:
@@ -68,7 +69,7 @@ def _read(path: Path) -> Content:
     declared, time, start, line = _settings(raw, found.end(), line, path)
     values, repairs = _frames(raw, start, line, width, declared, path)
     unit, guess = guessed_unit(joints)
-    notes = {_TIME: time} | {
+    notes = {FRAME_TIME: time} | {
         f"{END_SITE}{joint.name} {number}": name
         for joint, node in zip(joints, nodes, strict=True)
         for number, name in enumerate(node.end_names)
@@ -112,22 +113,22 @@ def _settings(raw: bytes, start: int, line: int, path: Path) -> tuple[int, str, 
             raise FormatError(
                 f"Frames or Frame Time expected, got {text.strip()[:40]!r}", path, line=line
             )
-        key = _TIME if "t" in setting[1].lower() else "Frames"
+        key = FRAME_TIME if "t" in setting[1].lower() else "Frames"
         if key in found:
             raise FormatError(f"{key} for the second time", path, line=line)
         found[key] = setting[2]
-        if key == _TIME:
+        if key == FRAME_TIME:
             _check_time(setting[2], path, line)
         else:
             whole_number(setting[2], path, line, "Frames")
-    return int(float(found["Frames"])), found[_TIME], start, line + 1
+    return int(float(found["Frames"])), found[FRAME_TIME], start, line + 1
 
 
 def _check_time(text: str, path: Path, line: int) -> None:
-    time = finite_number(text, path, line, _TIME)
+    time = finite_number(text, path, line, FRAME_TIME)
     if not 1e-6 <= time <= 1e6:
         raise FormatError(
-            f"{_TIME} must be seconds above 0, got {text[:40]!r}; 0.0333333 is 30 frames a second",
+            f"{FRAME_TIME} must be seconds above 0 (0.0333333 is 30 a second), got {text[:40]!r}",
             path,
             line=line,
         )
@@ -188,9 +189,9 @@ def _write(payload: Payload, path: Path) -> tuple[str, ...]:
         skeleton = motion.skeleton
     names, renamed = unlike([one_word(joint.name) for joint in skeleton.joints])
     lines = [*hierarchy_lines(skeleton, names, motion.notes), "MOTION", f"Frames: {motion.frames}"]
-    lines.append(f"{_TIME}: {_time(motion)}")
+    lines.append(f"{FRAME_TIME}: {frame_time(motion)}")
     write_lines(path, lines, number_lines(motion.values, path))
-    used = [_TIME, *(key for key in motion.notes if key.startswith(END_SITE))]
+    used = [FRAME_TIME, *(key for key in motion.notes if key.startswith(END_SITE))]
     lost += unheld(motion, used, first=0)
     if names != [joint.name for joint in skeleton.joints]:
         lost += ("blanks, braces and doubles in names", *renamed)
@@ -208,15 +209,6 @@ def _fits(skeleton: Skeleton) -> bool:
         and skeleton.space.radians_per_unit == DEGREES
         and all(joint.plain and not joint.limits for joint in skeleton.joints)
     )
-
-
-def _time(motion: SkeletonMotion) -> str:
-    written = motion.notes.get(_TIME, "")
-    try:
-        kept = 1 / float(written) == motion.rate
-    except (ValueError, ZeroDivisionError):
-        kept = False
-    return written if kept else repr(1 / motion.rate)
 
 
 BVH = Format("BVH", (".bvh",), "skeleton", _sniff, _read, _write)

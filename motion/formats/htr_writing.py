@@ -14,11 +14,12 @@ from scipy.spatial.transform import Rotation
 
 from enpointe.motion.formats.content import Payload
 from enpointe.motion.formats.convert import angles_of, flat
-from enpointe.motion.formats.skeleton import IDENTITY, Joint, Skeleton, SkeletonMotion
+from enpointe.motion.formats.skeleton import IDENTITY, Skeleton, SkeletonMotion
 from enpointe.motion.formats.space import DEGREES
 from enpointe.motion.formats.tree import Vector, unlike
 from enpointe.motion.formats.units import INCH
 from enpointe.motion.formats.writing import (
+    note_numbers,
     number_lines,
     one_word,
     skeleton_of,
@@ -160,22 +161,20 @@ def _head(
         parent = names[joint.parent] if joint.parent >= 0 else "GLOBAL"
         yield f"{name}\t{parent}" if kind == "htr" else name
     yield "[BasePosition]"
-    for index, (name, joint) in enumerate(zip(names, skeleton.joints, strict=True)):
-        yield f"{name} {_base(skeleton, index, joint, order, notes)}"
+    for index, name in enumerate(names):
+        yield f"{name} {_base(motion, index, order)}"
 
 
-def _base(skeleton: Skeleton, index: int, joint: Joint, order: str, notes: dict[str, str]) -> str:
+def _base(motion: SkeletonMotion, index: int, order: str) -> str:
     """Translation, rotation and length of a segment at rest; as the file had them if they hold."""
+    skeleton, joint = motion.skeleton, motion.skeleton.joints[index]
     radians = skeleton.space.radians_per_unit
-    written = notes.get(f"bone {joint.name}", "")
-    try:
-        x, y, z, *turns, length = (float(word) for word in written.split())
-        angles = [radians * turns["XYZ".index(axis)] for axis in order]
+    written = note_numbers(motion, f"bone {joint.name}")
+    if len(written) == 7 and tuple(written[:3]) == joint.offset:
+        angles = [radians * written[3 + "XYZ".index(axis)] for axis in order]
         same = Rotation.from_euler(order, angles).as_quat(scalar_first=True)
-        if (x, y, z) == joint.offset and np.allclose(same, joint.rest, rtol=0, atol=1e-15):
-            return written
-    except (ValueError, IndexError):
-        pass
+        if np.allclose(same, joint.rest, rtol=0, atol=1e-15):
+            return motion.notes[f"bone {joint.name}"]
     turn = Rotation.from_quat(joint.rest, scalar_first=True)
     found = (angles_of(turn, order) / radians)[:, [order.index(axis) for axis in "XYZ"]][0]
     length = _length(skeleton, index)

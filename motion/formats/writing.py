@@ -25,11 +25,14 @@ __all__ = [
 ]
 
 
+FRAME_TIME = "Frame Time"
+"""The note with a frame's time as a file writes it."""
+
 END_SITE = "end site "
 """Before a joint's name and a number, the note with what a file calls an end site."""
 
 # Notes that only keep the digits in which a file writes what the movement has anyway.
-_ONLY_DIGITS = ("bone ", "id of ", "length of ", "Frame Time")
+_ONLY_DIGITS = ("bone ", "id of ", FRAME_TIME)
 
 
 def skeleton_of(payload: Payload, path: Path, name: str) -> SkeletonMotion:
@@ -66,6 +69,22 @@ def write_lines(path: Path, *parts: Iterable[str]) -> None:
     with atomic_path(path) as beside, beside.open("w", encoding="utf-8", newline="\n") as file:
         for part in parts:
             file.writelines(line + "\n" for line in part)
+
+
+def note_numbers(motion: SkeletonMotion, name: str) -> list[float]:
+    """The numbers of a note, or none where it is not there or holds anything else."""
+    try:
+        numbers = [float(word) for word in motion.notes.get(name, "").split()]
+    except ValueError:
+        return []
+    return numbers if np.isfinite(numbers).all() else []
+
+
+def frame_time(motion: SkeletonMotion) -> str:
+    """Seconds a frame, in the digits of the file where they still are the rate's."""
+    written = note_numbers(motion, FRAME_TIME)
+    kept = len(written) == 1 and written[0] > 0 and 1 / written[0] == motion.rate
+    return motion.notes[FRAME_TIME].strip() if kept else repr(1 / motion.rate)
 
 
 def one_word(name: str) -> str:
