@@ -109,5 +109,5 @@ class MarkerMotion:
     @property
     def seen(self) -> NDArray[np.bool_]:
         """(T, M), whether a marker has a position."""
-        seen: NDArray[np.bool_] = np.isfinite(self.positions).all(axis=2)
+        seen: NDArray[np.bool_] = np.all(np.isfinite(self.positions), axis=2)
         return seen
