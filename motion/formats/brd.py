@@ -57,7 +57,8 @@ def read_brd(path: Path) -> Content:
     orientations = np.full((len(samples), len(markers), 4), np.nan)
     positions[rows, columns] = table[:, 2:5]
     orientations[rows, columns] = table[:, 5:9]
-    warnings, lost = [], []
+    warnings: list[str] = []
+    lost: list[str] = []
     if (np.diff(samples) != 1).any():
         warnings.append("sample numbers do not count up by one; the samples are taken in order")
     times = table[:, 9] + table[:, 10] * 1e-6 if timed else None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -97,7 +97,7 @@ def read_frames(file: BinaryIO, layout: Layout, encoding: Encoding) -> Frames:
     return Frames(frames.positions, frames.residuals, frames.cameras, frames.analog, discarded)
 
 
-def _take_points(points: NDArray[np.generic], layout: Layout, frames: Frames, rows: slice) -> int:
+def _take_points(points: NDArray[Any], layout: Layout, frames: Frames, rows: slice) -> int:
     """The fourth word is -1, or cameras in its high byte and the residual in its low one."""
     positions = frames.positions[rows]
     if layout.scale < 0:
@@ -121,7 +121,7 @@ def _take_points(points: NDArray[np.generic], layout: Layout, frames: Frames, ro
 
 
 def _take_analog(
-    samples: NDArray[np.generic], layout: Layout, frames: Frames, first: int, last: int
+    samples: NDArray[Any], layout: Layout, frames: Frames, first: int, last: int
 ) -> None:
     if not samples.size:
         return

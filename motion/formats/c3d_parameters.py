@@ -17,8 +17,6 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from enpointe.errors import FormatError
-
 __all__ = ["BLOCK", "Encoding", "Header", "Parameters", "Value", "read_header", "read_parameters"]
 
 BLOCK = 512

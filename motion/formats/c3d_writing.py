@@ -143,7 +143,7 @@ class _Analog:
         if analog is None:
             return
         per_frame = round(analog.rate / motion.rate)
-        fits = 1 <= per_frame and per_frame * analog.values.shape[1] <= _MOST_POINTS
+        fits = per_frame >= 1 and per_frame * analog.values.shape[1] <= _MOST_POINTS
         if not fits or len(analog.values) != per_frame * motion.frames:
             lost.append("analog signals, whose samples do not divide among the frames")
             return
@@ -292,7 +292,7 @@ def _event_parameters(motion: MarkerMotion, lost: list[str]) -> dict[str, _Param
 
 def _from_note(name: str, text: str) -> _Parameter | None:
     """A parameter out of JSON, as `read_c3d` keeps it."""
-    group, _, own = name.partition(":")
+    _group, _, own = name.partition(":")
     if not own or not (0 < len(name.encode()) < 120):
         return None
     try:

@@ -90,7 +90,8 @@ def _guessed_unit(positions: Array, axis: int, usual: float) -> float:
 def _ranges(positions: Array) -> tuple[Array, Array]:
     """Lowest and highest coordinates, (3,) each, typical for a frame."""
     few = positions[:: max(len(positions) // _LOOKED_AT, 1)]
-    seen = few[np.isfinite(few).all(axis=2).any(axis=1)]
+    whole = np.any(np.all(np.isfinite(few), axis=2), axis=1)
+    seen: Array = few[whole]
     if not seen.size:
         return np.full(3, np.nan), np.full(3, np.nan)
     known = np.isfinite(seen)

@@ -5,14 +5,25 @@ from __future__ import annotations
 from pathlib import Path
 
 from enpointe.errors import EnpointeError, FormatError
+from enpointe.motion.formats.aoa import AOA
+from enpointe.motion.formats.brd import BRD
+from enpointe.motion.formats.c3d import C3D
 from enpointe.motion.formats.content import Content, Format, Payload
+from enpointe.motion.formats.csm import CSM
+from enpointe.motion.formats.trc import TRC
 
 __all__ = ["FORMATS", "formats", "read", "sniffed", "write"]
 
 _HEAD = 4096
 
 # One line a format; where a file could be two, the earlier is taken.
-FORMATS: tuple[Format, ...] = ()
+FORMATS: tuple[Format, ...] = (
+    C3D,
+    TRC,
+    CSM,
+    AOA,
+    BRD,
+)
 
 
 def formats() -> tuple[Format, ...]:
