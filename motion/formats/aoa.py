@@ -15,7 +15,7 @@ from enpointe.files import write_text
 from enpointe.motion.formats.columns import column_table, number_text
 from enpointe.motion.formats.content import Content, Format, Payload
 from enpointe.motion.formats.guessing import guessed_space
-from enpointe.motion.formats.holding import left_out, markers_of
+from enpointe.motion.formats.holding import left_out, lost_notes, markers_of
 from enpointe.motion.formats.markers import MarkerMotion
 from enpointe.motion.formats.text import finite_number, read_text, whole_number
 
@@ -91,7 +91,7 @@ def write_aoa(payload: Payload, path: Path) -> tuple[str, ...]:
         lost.append("names of the markers")
     if motion.start != 1:
         lost.append(f"the first frame's number {motion.start}")
-    return (*lost, *(f"the note {name!r}" for name in motion.notes if name != _COMMENT))
+    return (*lost, *lost_notes(motion, _COMMENT))
 
 
 def _sniff(start: bytes) -> bool:

@@ -17,7 +17,7 @@ from enpointe.files import write_text
 from enpointe.motion.formats.columns import column_table, number_text
 from enpointe.motion.formats.content import Content, Format, Payload
 from enpointe.motion.formats.guessing import guessed_space
-from enpointe.motion.formats.holding import left_out, markers_of
+from enpointe.motion.formats.holding import left_out, lost_notes, markers_of
 from enpointe.motion.formats.markers import MarkerMotion
 from enpointe.motion.formats.text import read_text
 
@@ -27,6 +27,7 @@ Array = NDArray[np.float64]
 _TIMED, _UNTIMED = 13, 11
 _USUAL_RATE = 30.0
 _INCH = 0.0254
+_FIRST_TIME = "time of the first sample"
 _EMPTY_CELLS = 4
 """How many cells of the table of samples and markers may be empty for each that is not."""
 
@@ -67,7 +68,7 @@ def read_brd(path: Path) -> Content:
     names = tuple(str(int(marker)) for marker in markers)
     notes = {}
     if times is not None and times[0]:
-        notes["time of the first sample"] = f"{int(table[0, 9])} {int(table[0, 10])}"
+        notes[_FIRST_TIME] = f"{int(table[0, 9])} {int(table[0, 10])}"
     motion = MarkerMotion(
         names, rate, positions, space, int(samples[0]), orientations=orientations, notes=notes
     )
@@ -97,7 +98,7 @@ def write_brd(payload: Payload, path: Path) -> tuple[str, ...]:
         lost.append("that the markers have no orientations; all are written as 1 0 0 0")
     if not motion.seen.any(axis=0).all() or not motion.seen.any(axis=1).all():
         lost.append("markers and samples of which nothing was seen")
-    first = _microseconds(motion.notes.get("time of the first sample", ""))
+    first = _microseconds(motion.notes.get(_FIRST_TIME, ""))
     lines = []
     for index in range(motion.frames):
         seconds, micro = divmod(first + round(index * 1e6 / motion.rate), 1_000_000)
@@ -110,7 +111,7 @@ def write_brd(payload: Payload, path: Path) -> tuple[str, ...]:
                 lines.append(f"{motion.start + index} {number} P {place} Q {way} {seconds} {micro}")
     write_text(path, "\n".join(lines) + "\n")
     lost.append("the unit of length and the upward axis, which BRD does not name")
-    return tuple(lost)
+    return (*lost, *lost_notes(motion, _FIRST_TIME))
 
 
 def _sniff(start: bytes) -> bool:

@@ -23,6 +23,7 @@ from enpointe.motion.formats.text import finite_number, read_text, whole_number
 
 __all__ = ["CSM", "read_csm", "write_csm"]
 
+_NAME = re.compile(r"[A-Za-z]+")
 _KEY = re.compile(r"\$([A-Za-z]+)[ \t]*(.*)")
 _USUAL_RATE = 30.0
 _TOLD = frozenset({"firstframe", "lastframe", "rate", "order", "points"})
@@ -75,7 +76,7 @@ def write_csm(payload: Payload, path: Path) -> tuple[str, ...]:
     names, changed = plain_names(motion.names, _name)
     lines = []
     for key, value in motion.notes.items():
-        if _KEY.fullmatch(f"${key}") and key.lower() not in _TOLD:
+        if _NAME.fullmatch(key) and key.lower() not in _TOLD:
             lines += _section(key, value)
         else:
             changed.append(f"the note {key!r}")

@@ -11,7 +11,7 @@ from enpointe.errors import FormatError
 from enpointe.motion.formats.content import Payload
 from enpointe.motion.formats.markers import MarkerMotion
 
-__all__ = ["left_out", "markers_of", "plain_names"]
+__all__ = ["left_out", "lost_notes", "markers_of", "plain_names"]
 
 
 def markers_of(payload: Payload, path: Path, format_name: str) -> MarkerMotion:
@@ -46,6 +46,11 @@ def left_out(motion: MarkerMotion, *held: str) -> list[str]:
         "gaps": "gaps are written as NaN, which few readers of this format know",
     }
     return [lines[part] for part, present in parts.items() if present and part not in held]
+
+
+def lost_notes(motion: MarkerMotion, *held: str) -> list[str]:
+    """A line for each note that is not among `held`."""
+    return [f"the note {name!r}" for name in motion.notes if name not in held]
 
 
 def plain_names(

@@ -10,6 +10,7 @@ from enpointe.motion.formats.brd import BRD
 from enpointe.motion.formats.c3d import C3D
 from enpointe.motion.formats.content import Content, Format, Payload
 from enpointe.motion.formats.csm import CSM
+from enpointe.motion.formats.csv_table import CSV_JOINTS, CSV_MARKERS
 from enpointe.motion.formats.trc import TRC
 
 __all__ = ["FORMATS", "formats", "read", "sniffed", "write"]
@@ -23,6 +24,8 @@ FORMATS: tuple[Format, ...] = (
     CSM,
     AOA,
     BRD,
+    CSV_MARKERS,
+    CSV_JOINTS,
 )
 
 

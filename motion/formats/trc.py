@@ -19,7 +19,7 @@ from enpointe.files import write_text
 from enpointe.motion.formats.columns import column_table, number_text
 from enpointe.motion.formats.content import Content, Format, Payload
 from enpointe.motion.formats.guessing import UNITS, guessed_space, unit_name
-from enpointe.motion.formats.holding import left_out, markers_of, plain_names
+from enpointe.motion.formats.holding import left_out, lost_notes, markers_of, plain_names
 from enpointe.motion.formats.markers import MarkerMotion
 from enpointe.motion.formats.text import finite_number, read_text
 
@@ -105,7 +105,8 @@ def write_trc(payload: Payload, path: Path) -> tuple[str, ...]:
         fields[-3:] = [field or "NaN" for field in fields[-3:]]
         lines.append("\t".join(fields))
     write_text(path, "\n".join(lines) + "\n")
-    return (*left_out(motion, "gaps"), *changed)
+    notes = lost_notes(motion, "PathFileType", _FIRST_TIME, *_KEYS)
+    return (*left_out(motion, "gaps"), *changed, *notes)
 
 
 def _sniff(start: bytes) -> bool:
