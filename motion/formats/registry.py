@@ -6,12 +6,18 @@ from pathlib import Path
 
 from enpointe.errors import EnpointeError, FormatError
 from enpointe.motion.formats.amc import AMC
+from enpointe.motion.formats.aoa import AOA
 from enpointe.motion.formats.asf import ASF
 from enpointe.motion.formats.ask import ASK
+from enpointe.motion.formats.brd import BRD
 from enpointe.motion.formats.bva import BVA
 from enpointe.motion.formats.bvh import BVH
+from enpointe.motion.formats.c3d import C3D
 from enpointe.motion.formats.content import Content, Format, Payload
+from enpointe.motion.formats.csm import CSM
+from enpointe.motion.formats.csv_table import CSV_JOINTS, CSV_MARKERS
 from enpointe.motion.formats.htr import GTR, HTR
+from enpointe.motion.formats.trc import TRC
 
 __all__ = ["FORMATS", "formats", "read", "sniffed", "write"]
 
@@ -26,6 +32,13 @@ FORMATS: tuple[Format, ...] = (
     BVA,
     HTR,
     GTR,
+    C3D,
+    TRC,
+    CSM,
+    AOA,
+    BRD,
+    CSV_MARKERS,
+    CSV_JOINTS,
 )
 
 
