@@ -20,6 +20,7 @@ from enpointe.motion.formats.convert import depth_first, plain
 from enpointe.motion.formats.skeleton import Joint, Skeleton, SkeletonMotion
 from enpointe.motion.formats.space import DEGREES, Space
 from enpointe.motion.formats.text import (
+    CUT,
     decoded,
     finite_number,
     number_block,
@@ -145,17 +146,19 @@ def _frames(
 ) -> tuple[NDArray[np.float64], list[str]]:
     """The rows of numbers, and what had to be mended."""
     what = "a frame"
-    last = raw.rfind(b"\n", start, len(raw.rstrip())) + 1 or len(raw)
-    cut = raw[max(last, start) :].split()
+    last = max(raw.rfind(b"\n", start, len(raw.rstrip())) + 1, start)
+    cut = raw[last:].split()
     warnings = []
     if last > start and len(cut) < width and declared * width > len(cut):
         values, mended = _whole_or_broken(raw, last, start, line, width, declared, path)
         warnings += mended
     else:
         values = number_block(raw, width, path, line, what, start)
-        if len(values) < declared and not raw.endswith(b"\n") and len(values) > 1:
+        if not raw.endswith(b"\n") and len(values) < declared:
             values = values[:-1]
             warnings.append("the file ends within its last line: that frame is left out")
+        elif not raw.endswith(b"\n"):
+            warnings.append(CUT)
     if not len(values):
         raise FormatError("there are no frames", path, line=line)
     if len(values) != declared:

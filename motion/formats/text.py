@@ -11,6 +11,7 @@ from enpointe.errors import FormatError
 from enpointe.motion.formats.numbers import blocks, parsed, tokens
 
 __all__ = [
+    "CUT",
     "decoded",
     "finite_number",
     "number_block",
@@ -20,6 +21,9 @@ __all__ = [
     "refuse_merge_marks",
     "whole_number",
 ]
+
+CUT = "the file ends within a line: its last number may be cut short"
+"""The warning about text without a line end, in which nothing else shows a cut."""
 
 _LARGEST_COUNT = 10**9
 _MERGE_MARKS = ("<<<<<<<", "=======", ">>>>>>>")
