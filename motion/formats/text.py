@@ -154,7 +154,9 @@ def number_block(
         wrong = np.flatnonzero(counts > width if broken else (counts != width) & (counts != 0))
         values, bad = parsed(words)
         if bad is not None and (not len(wrong) or bad < counts[: wrong[0]].sum()):
-            at = line + int(np.searchsorted(np.cumsum(counts), bad, side="right"))
+            row = int(np.searchsorted(np.cumsum(counts), bad, side="right"))
+            at = line + row
+            refuse_merge_marks(words.text(int(counts[:row].sum())), path, at)
             finite_number(words.text(bad), path, at, f"each value of {what}")
         if len(wrong):
             place = int(counts[: wrong[0]].sum())
