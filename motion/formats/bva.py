@@ -83,8 +83,9 @@ def _read(path: Path) -> Content:
         reader.warnings.append(CUT)
     segments = reader.segments()
     first = segments[0]
-    for segment in segments[1:]:
-        same = float(segment.time) == float(first.time) and segment.units == first.units
+    units = [reader.units(segment) for segment in segments]
+    for segment, measure in zip(segments, units, strict=True):
+        same = float(segment.time) == float(first.time) and measure == units[0]
         if len(segment.values) != len(first.values) or not same:
             raise FormatError(
                 f"{segment.name[:40]!r} has {len(segment.values)} frames of {segment.time} s, "
@@ -97,7 +98,7 @@ def _read(path: Path) -> Content:
         Joint(name, -1, channels=segment.channels, order=_order(segment.channels))
         for name, segment in zip(names, segments, strict=True)
     )
-    metres, radians = reader.units(first)
+    metres, radians = units[0]
     values = np.concatenate([segment.values for segment in segments], axis=1)
     skeleton = Skeleton(joints, Space(metres, radians_per_unit=radians))
     notes = {FRAME_TIME: first.time}
