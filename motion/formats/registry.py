@@ -6,6 +6,7 @@ from pathlib import Path
 
 from enpointe.errors import EnpointeError, FormatError
 from enpointe.motion.formats.aoa import AOA
+from enpointe.motion.formats.bap import BAP
 from enpointe.motion.formats.brd import BRD
 from enpointe.motion.formats.c3d import C3D
 from enpointe.motion.formats.content import Content, Format, Payload
@@ -26,6 +27,7 @@ FORMATS: tuple[Format, ...] = (
     BRD,
     CSV_MARKERS,
     CSV_JOINTS,
+    BAP,
 )
 
 
