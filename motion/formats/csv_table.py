@@ -20,7 +20,12 @@ from numpy.typing import NDArray
 
 from enpointe.errors import FormatError, MotionError
 from enpointe.files import write_text
-from enpointe.motion.formats.columns import column_table, number_text
+from enpointe.motion.formats.columns import (
+    MOST_MARKERS,
+    column_table,
+    gap_warnings,
+    number_text,
+)
 from enpointe.motion.formats.content import Content, Format, Payload
 from enpointe.motion.formats.guessing import UNITS, guessed_space, unit_name
 from enpointe.motion.formats.holding import left_out, markers_of
@@ -59,14 +64,13 @@ def read_csv(path: Path) -> Content:
     del lines
     width = len(columns) + 1
     table = column_table(rows, width, path, at + 2, "a row", delimiter=",", needed=1)
-    del rows
     if not len(table):
         raise FormatError("there are no rows", path, line=at + 1)
     rate, warnings = _rate(table[:, 0], told, path)
     try:
         if any(column.channel in CHANNELS for column in columns):
             return _joints(columns, table, rate, told, warnings, path, at + 1)
-        return _markers(columns, table, rate, told, warnings)
+        return _markers(columns, table, rows, rate, told, warnings)
     except MotionError as error:
         raise FormatError(str(error), path, line=at + 1) from None
 
@@ -133,6 +137,8 @@ def _told(lines: list[str], path: Path) -> dict[str, object]:
 
 
 def _columns(line: str, path: Path, number: int) -> list[_Column]:
+    if len(line) > 40 * MOST_MARKERS:
+        raise FormatError(f"more than {MOST_MARKERS} columns", path, line=number)
     try:
         fields = next(csv.reader([line]))
     except (csv.Error, StopIteration):
@@ -205,7 +211,12 @@ def _space(
 
 
 def _markers(
-    columns: list[_Column], table: Array, rate: float, told: dict[str, object], warnings: list[str]
+    columns: list[_Column],
+    table: Array,
+    rows: list[str],
+    rate: float,
+    told: dict[str, object],
+    warnings: list[str],
 ) -> Content:
     markers = _grouped(columns)
     found = {column.channel for column in columns}
@@ -225,6 +236,7 @@ def _markers(
                 residuals[:, index] = values
             elif channel == "cameras" and cameras is not None:
                 cameras[:, index] = np.clip(np.nan_to_num(values), 0, 255).astype(np.uint8)
+    warnings += gap_warnings(rows, len(columns) + 1, ",", positions)
     positions[~np.isfinite(positions).all(axis=2)] = np.nan
     strange = sorted({c.channel for c in columns} - {*_POINT, *_TURN, "residual", "cameras"})
     motion = MarkerMotion(
