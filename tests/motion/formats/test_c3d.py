@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from enpointe.errors import FormatError
@@ -134,6 +134,7 @@ def test_everything_that_can_be_held_comes_back(tmp_path: Path) -> None:
     assert again.notes["SUBJECTS:AGES"] == motion.notes["SUBJECTS:AGES"]
 
 
+@settings(max_examples=40)
 @given(motion=marker_motions(), scale=st.sampled_from([0.0, 100.0]))
 def test_any_movement_comes_back_to_the_step(
     tmp_path_factory: pytest.TempPathFactory, motion: MarkerMotion, scale: float

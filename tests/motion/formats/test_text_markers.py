@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 
 from enpointe.errors import FormatError
 from enpointe.motion.formats import MarkerMotion, formats, read
@@ -157,6 +157,7 @@ def test_too_sparse_a_brd_is_refused_before_it_is_built(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("ending", ["csm", "aoa", "brd"])
+@settings(max_examples=30)
 @given(motion=marker_motions())
 def test_what_is_written_reads_back_the_same(
     tmp_path_factory: pytest.TempPathFactory, ending: str, motion: MarkerMotion
