@@ -55,7 +55,7 @@ class Holding:
         """First frames of the samples from `start` to `stop`, (stop - start,)."""
         if self.frames == self.samples:
             return np.arange(start, stop, dtype=np.int64)
-        if stop * self.frames < _EXACT:
+        if max(stop, 1) * self.frames < _EXACT:
             return -(-np.arange(start, stop, dtype=np.int64) * self.frames // self.samples)
         return np.array([self.first_frame(k) for k in range(start, stop)], dtype=np.int64)
 

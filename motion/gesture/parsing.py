@@ -186,7 +186,7 @@ class _HeadParser:
         if self._frames is None:
             return position >= self._size
         if position + 8 > self._size:
-            if position < min(self._size, self._form_end):
+            if position < self._form_end <= self._size:
                 self._notes.warn(f"{self._size - position} bytes after the last chunk left out")
             return True
         return position >= self._form_end
@@ -201,7 +201,8 @@ class _HeadParser:
                     f"{self._named(chunk)} says {chunk.size} bytes, the file has {has}",
                     chunk.at + 4,
                 )
-            self._notes.warn(f"{self._named(chunk)} at byte {chunk.at} is cut, and left out")
+            if chunk.name != FILLER:
+                self._notes.lose(f"{self._named(chunk)} at byte {chunk.at}, which is cut")
             return self._size
         if chunk.name in (b"SCEN", b"UNIT", b"CHAN"):
             if self._frames is not None:
