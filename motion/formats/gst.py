@@ -7,8 +7,8 @@ from pathlib import Path
 from enpointe.errors import FormatError, MotionError
 from enpointe.motion.formats.content import Content, Format, Payload
 from enpointe.motion.formats.markers import MarkerMotion
+from enpointe.motion.formats.scenes import scene_of_markers, scene_of_skeleton
 from enpointe.motion.formats.skeleton import SkeletonMotion
-from enpointe.motion.gesture.converting import scene_of_markers, scene_of_skeleton
 from enpointe.motion.gesture.files import write_scene
 from enpointe.motion.gesture.reader import GestureReader
 

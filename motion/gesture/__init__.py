@@ -7,9 +7,6 @@ from typing import TYPE_CHECKING
 from enpointe.lazy import lazy
 
 if TYPE_CHECKING:
-    from enpointe.motion.gesture.converting import markers_of as markers_of
-    from enpointe.motion.gesture.converting import scene_of_markers as scene_of_markers
-    from enpointe.motion.gesture.converting import scene_of_skeleton as scene_of_skeleton
     from enpointe.motion.gesture.encoding import Encoding as Encoding
     from enpointe.motion.gesture.files import read_scene as read_scene
     from enpointe.motion.gesture.files import write_scene as write_scene
@@ -36,12 +33,9 @@ _HOMES = {
     "Track": "enpointe.motion.gesture.scene",
     "Unit": "enpointe.motion.gesture.scene",
     "Variable": "enpointe.motion.gesture.scene",
-    "markers_of": "enpointe.motion.gesture.converting",
     "merged": "enpointe.motion.gesture.scene",
     "read_scene": "enpointe.motion.gesture.files",
-    "scene_of_markers": "enpointe.motion.gesture.converting",
     "scene_of_motion": "enpointe.motion.gesture.of_motion",
-    "scene_of_skeleton": "enpointe.motion.gesture.converting",
     "write_scene": "enpointe.motion.gesture.files",
 }
 
@@ -56,12 +50,9 @@ __all__ = [
     "Track",
     "Unit",
     "Variable",
-    "markers_of",
     "merged",
     "read_scene",
-    "scene_of_markers",
     "scene_of_motion",
-    "scene_of_skeleton",
     "write_scene",
 ]
 __getattr__, __dir__ = lazy(__name__, _HOMES)

@@ -19,6 +19,7 @@ __all__ = ["Holding"]
 
 Indices = NDArray[np.int64]
 _EXACT = 2**62
+_NEAR = 1e-14
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,16 +54,27 @@ class Holding:
 
     def first_frames(self, start: int, stop: int) -> Indices:
         """First frames of the samples from `start` to `stop`, (stop - start,)."""
-        if self.frames == self.samples:
-            return np.arange(start, stop, dtype=np.int64)
-        if max(stop, 1) * self.frames < _EXACT:
-            return -(-np.arange(start, stop, dtype=np.int64) * self.frames // self.samples)
-        return np.array([self.first_frame(k) for k in range(start, stop)], dtype=np.int64)
+        return -_floors(-np.arange(start, stop, dtype=np.int64), self.frames, self.samples)
 
     def held(self, start: int, stop: int) -> Indices:
         """Which sample each frame from `start` to `stop` holds, (stop - start,)."""
-        if self.frames == self.samples:
-            return np.arange(start, stop, dtype=np.int64)
-        if max(stop * self.samples, self.frames) < _EXACT:
-            return np.arange(start, stop, dtype=np.int64) * self.samples // self.frames
-        return np.array([f * self.samples // self.frames for f in range(start, stop)], np.int64)
+        return _floors(np.arange(start, stop, dtype=np.int64), self.samples, self.frames)
+
+
+def _floors(numbers: Indices, numerator: int, denominator: int) -> Indices:
+    """Floors of numbers * numerator / denominator, which are to be of a file's size.
+
+    Two rates that are no whole numbers make a ratio too long for machine integers: then in floating
+    point, and in Python's integers where that is too near a whole number to tell.
+    """
+    if not numbers.size:
+        return numbers
+    largest = int(max(abs(numbers[0]), abs(numbers[-1]), 1))
+    if max(largest * numerator, denominator) < _EXACT:
+        return numbers * numerator // denominator
+    scaled = numbers * float(Fraction(min(numerator, denominator * _EXACT), denominator))
+    floors = np.floor(scaled)
+    unsure = np.abs(scaled - np.rint(scaled)) <= _NEAR * np.maximum(np.abs(scaled), 1.0)
+    floors[unsure] = [int(n) * numerator // denominator for n in numbers[unsure]]
+    whole: Indices = floors.astype(np.int64)
+    return whole

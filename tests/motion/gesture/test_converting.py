@@ -8,22 +8,19 @@ import mujoco
 import numpy as np
 import pytest
 
-from enpointe.errors import FormatError, MotionError
-from enpointe.motion import Motion
+from enpointe.errors import EnpointeError, FormatError, MotionError
+from enpointe.motion import Motion, formats
 from enpointe.motion.formats import Analog, Joint, MarkerMotion, Skeleton, SkeletonMotion, Space
 from enpointe.motion.formats.gst import GST
+from enpointe.motion.formats.scenes import markers_of_scene, scene_of_markers, scene_of_skeleton
 from enpointe.motion.gesture import (
     Channel,
     Dimension,
     Scene,
     Unit,
     Variable,
-    markers_of,
     read_scene,
-    scene_of_markers,
     scene_of_motion,
-    scene_of_skeleton,
-    write_scene,
 )
 
 from ..dancing import tiny_model
@@ -54,7 +51,7 @@ def test_markers_there_and_back(space: Space, measure: str) -> None:
     scene, lost = scene_of_markers(motion, "walk")
     assert not lost
     assert {c.measure for c in scene.units[0].channels} == {measure}
-    back, lost = markers_of(scene)
+    back, lost = markers_of_scene(scene)
     assert not lost
     assert (back.names, back.rate, back.space.up) == (motion.names, motion.rate, "z")
     assert back.space.metres_per_unit == space.metres_per_unit
@@ -91,7 +88,7 @@ def test_points_among_other_things_are_the_markers() -> None:
     other = Unit("other", (Channel("A", measure="cm"),), 100.0)
     values = np.arange(12.0).reshape(2, 6)
     scene = Scene("", (one, other), (values, values[:, :3]))
-    motion, lost = markers_of(scene)
+    motion, lost = markers_of_scene(scene)
     assert motion.names == ("one:A", "other:A")
     assert motion.space.metres_per_unit == 1.0
     np.testing.assert_allclose(motion.positions[1], [[6, 7, 8], [0.06, 0.07, 0.08]])
@@ -104,11 +101,11 @@ def test_scenes_that_are_no_markers_say_why() -> None:
     values = np.zeros((2, 3))
     slow, fast = Unit("slow", (point,), 50.0), Unit("fast", (point,), 100.0)
     with pytest.raises(MotionError, match="no 3D positions"):
-        markers_of(keyboard())
+        markers_of_scene(keyboard())
     with pytest.raises(MotionError, match="2 at 50 Hz, 2 at 100 Hz"):
-        markers_of(Scene("", (slow, fast), (values, values)))
+        markers_of_scene(Scene("", (slow, fast), (values, values)))
     with pytest.raises(MotionError, match="no known length"):
-        markers_of(Scene("", (Unit("u", (Channel("A", measure="apples"),), 1.0),), (values,)))
+        markers_of_scene(Scene("", (Unit("u", (Channel("A", measure="apples"),), 1.0),), (values,)))
 
 
 def arm() -> SkeletonMotion:
@@ -139,7 +136,7 @@ def test_a_skeleton_gives_points_and_angles_joint_by_joint() -> None:
     np.testing.assert_allclose(signal[1, 4:7], [2, 3 - 2, 1], atol=1e-12)
     np.testing.assert_allclose(signal[1, 7:10], [20, 30, 10], atol=1e-12)
     assert lost == ("the hierarchy and its offsets",)
-    points, _ = markers_of(scene)
+    points, _ = markers_of_scene(scene)
     world, _ = motion.world()
     np.testing.assert_allclose(
         points.space.points(points.positions), motion.skeleton.space.points(world), atol=1e-15
@@ -215,27 +212,21 @@ def test_the_format_writes_every_kind_and_reads_scenes(tmp_path: Path) -> None:
     assert_same(read_scene(path), keyboard())
 
 
+def test_a_scene_goes_by_the_list_of_formats_and_no_other_format_takes_it(tmp_path: Path) -> None:
+    formats.write(keyboard(), tmp_path / "keys.gst")
+    formats.write(markers(), tmp_path / "walk.gst")
+    content = formats.read(tmp_path / "keys.gst")
+    assert isinstance(content.motion, Scene)
+    assert_same(content.motion, keyboard())
+    for ending in sorted({s for f in formats.formats() if f is not GST for s in f.suffixes}):
+        with pytest.raises(EnpointeError):
+            formats.write(keyboard(), tmp_path / f"keys{ending}")
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["keys.gst", "walk.gst"]
+
+
 def test_the_format_refuses_with_the_files_name(tmp_path: Path) -> None:
     assert GST.write is not None
     nobody = MarkerMotion((), 100.0, np.zeros((2, 0, 3)))
     with pytest.raises(FormatError, match=r"any\.gst: unit 'markers' needs one channel"):
         GST.write(nobody, tmp_path / "any.gst")
     assert not list(tmp_path.iterdir())
-
-
-def test_real_markers_survive_the_way_through_a_file(data_dir: Path, tmp_path: Path) -> None:
-    """Positions of a dancer's joints as `shared/data` has them, read as plain numbers."""
-    source = sorted((data_dir / "trc").rglob("*.trc"))[0]
-    rows = []
-    for line in source.read_text(encoding="latin-1").splitlines():
-        parts = line.split("\t")
-        try:
-            rows.append([float(x) if x.strip() else np.nan for x in parts[2:11]])
-        except ValueError:
-            continue
-    table = np.array([row for row in rows if len(row) == 9])
-    motion = MarkerMotion(("a", "b", "c"), 100.0, table.reshape(-1, 3, 3), MILLIMETRES)
-    assert motion.frames > 50
-    write_scene(scene_of_markers(motion)[0], tmp_path / "real.gst")
-    back, _ = markers_of(read_scene(tmp_path / "real.gst"))
-    np.testing.assert_array_equal(back.positions, motion.positions @ motion.space.to_ours.T)

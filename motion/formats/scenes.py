@@ -14,15 +14,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from enpointe.errors import MotionError
+from enpointe.motion.formats.guessing import UNITS
 from enpointe.motion.formats.markers import Analog, MarkerMotion
 from enpointe.motion.formats.skeleton import Joint, SkeletonMotion
 from enpointe.motion.formats.space import DEGREES, Space
 from enpointe.motion.gesture.scene import Channel, Dimension, Scene, Unit, Variable
 
-__all__ = ["markers_of", "scene_of_markers", "scene_of_skeleton"]
+__all__ = ["markers_of_scene", "scene_of_markers", "scene_of_skeleton"]
 
 Array = NDArray[np.float64]
-_LENGTHS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
 _SOME_METRES = re.compile(r"([0-9.e+-]+) m")
 _ANALOG = {
     "n": Variable.FORCE,
@@ -85,7 +85,7 @@ def scene_of_skeleton(motion: SkeletonMotion, name: str = "") -> tuple[Scene, tu
 
     "In absolute coordinates", as the document wants motions free of a hierarchy (§4.4); the angles
     are beside them for whoever has the hierarchy. Their channel is called by the joint and the
-    order in which the axes are turned, "hip ZXY"; its tracks are in the channel's own order.
+    order in which the rotations are multiplied, "hip ZXY"; its tracks are in the channel's order.
 
     Args:
         motion: The skeleton.
@@ -103,11 +103,11 @@ def scene_of_skeleton(motion: SkeletonMotion, name: str = "") -> tuple[Scene, tu
         channels.append(Channel(joint.name, measure=measure))
         columns.append(points[:, index])
         values = motion.values[:, motion.skeleton.columns(index)]
-        angles = _angles(joint, motion.skeleton.space)
-        if angles is not None:
+        if joint.turning:
+            angles = _angles(joint, motion.skeleton.space)
             channels.append(angles)
-            order = [joint.channels.index(f"{a}rotation") for a in _capitals(angles.dimension)]
-            columns.append(values[:, order])
+            axes = [f"{axis.upper()}rotation" for axis in angles.dimension.axes]
+            columns.append(values[:, [joint.channels.index(axis) for axis in axes]])
         if any(channel.endswith("scale") for channel in joint.channels):
             lost.append(f"scales of {joint.name!r}")
     if motion.notes:
@@ -116,7 +116,7 @@ def scene_of_skeleton(motion: SkeletonMotion, name: str = "") -> tuple[Scene, tu
     return Scene(name, (unit,), (np.hstack(columns),)), tuple(lost)
 
 
-def markers_of(scene: Scene) -> tuple[MarkerMotion, tuple[str, ...]]:
+def markers_of_scene(scene: Scene) -> tuple[MarkerMotion, tuple[str, ...]]:
     """The 3D positions of a scene as markers, in metres unless all have one other unit of length.
 
     Args:
@@ -171,25 +171,19 @@ def _of_analog(analog: Analog) -> tuple[Unit | None, Array, list[str]]:
             channels.append(Channel(name, variable, Dimension.SCALAR, measure))
             kept.append(column)
     unit = Unit("analog", tuple(channels), analog.rate) if channels else None
-    return unit, analog.values[:, kept], lost
+    signal = np.asarray(analog.values[:, kept], dtype=np.float64)
+    return unit, signal, lost
 
 
-def _angles(joint: Joint, space: Space) -> Channel | None:
-    order = "".join(c[0] for c in joint.channels if c.endswith("rotation"))
-    if not order:
-        return None
-    dimension = _BY_AXES["".join(sorted(order.lower()))]
+def _angles(joint: Joint, space: Space) -> Channel:
+    dimension = _BY_AXES["".join(sorted(joint.product.lower()))]
     unit = space.radians_per_unit
     measure = "deg" if isclose(unit, DEGREES) else "rad" if unit == 1.0 else f"{unit / pi!r} pi rad"
-    return Channel(f"{joint.name} {order}", Variable.ANGLE, dimension, measure)
-
-
-def _capitals(dimension: Dimension) -> tuple[str, ...]:
-    return tuple(axis.upper() for axis in dimension.axes)
+    return Channel(f"{joint.name} {joint.product}", Variable.ANGLE, dimension, measure)
 
 
 def _measure(space: Space) -> str:
-    for name, metres in _LENGTHS.items():
+    for name, metres in UNITS.items():
         if isclose(space.metres_per_unit, metres, rel_tol=1e-12):
             return name
     return f"{space.metres_per_unit!r} m"
@@ -198,8 +192,8 @@ def _measure(space: Space) -> str:
 def _metres(channel: Channel) -> float:
     if not channel.measure:
         return 1.0
-    if channel.measure in _LENGTHS:
-        return _LENGTHS[channel.measure]
+    if channel.measure in UNITS:
+        return UNITS[channel.measure]
     several = _SOME_METRES.fullmatch(channel.measure)
     try:
         length = float(several[1]) if several else 0.0
