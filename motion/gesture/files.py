@@ -87,7 +87,9 @@ def _blocks(scene: Scene, holdings: list[Holding], frames: int, size: int) -> It
 
 
 def _held(signal: Array, holding: Holding, first: int, last: int) -> Array:
-    """(last - first, width): the unit in those frames, its last sample held; zeros without any."""
+    """(last - first, width): the unit in those frames, its last sample held; zeros for none."""
+    if holding.frames == holding.samples and last <= len(signal):
+        return signal[first:last]
     if not len(signal):
         return np.zeros((last - first, signal.shape[1]))
     return signal[np.minimum(holding.held(first, last), len(signal) - 1)]

@@ -24,7 +24,8 @@ def scene_of_motion(
     exchanged (ENACTIVE D.RD3.3.1 §4.3.3), with the rates that it gives for what is seen and for
     what is touched (§4.3.2):
 
-    - "dancer": where the root is and how every hinge is bent ("root" 3Dxyz in m, hinges 0D in rad).
+    - "dancer": where the root is ("root", 3Dxyz, m), how it is turned ("root turn", 3Dxyz, rad: the
+      rotation vector, of half a turn at most) and how every hinge is bent (0D, rad).
     - "floor": the centre of mass (3Dxyz, m) and the force that the floor must give for the body to
       move so, F = m (a_com - g) (3Dxyz, N): all contacts together, from the inverse dynamics of the
       motion and not from a simulated contact. Where a motion is impossible it pulls.
@@ -42,7 +43,10 @@ def scene_of_motion(
             none.
     """
     root, hinges = _joints(motion.model)
-    channels = [Channel("root", Variable.POSITION, Dimension.XYZ, "m")]
+    channels = [
+        Channel("root", Variable.POSITION, Dimension.XYZ, "m"),
+        Channel("root turn", Variable.ANGLE, Dimension.XYZ, "rad"),
+    ]
     channels += [
         Channel(motion.model.joint(hinge).name, Variable.ANGLE, Dimension.SCALAR, "rad")
         for hinge in hinges
@@ -51,10 +55,8 @@ def scene_of_motion(
     weight = Channel("centre of mass", Variable.POSITION, Dimension.XYZ, "m")
     force = Channel("ground reaction", Variable.FORCE, Dimension.XYZ, "N")
     floor = Unit("floor", (weight, force), force_rate)
-    first = int(motion.model.jnt_qposadr[root])
-    addresses = [*range(first, first + 3), *(int(motion.model.jnt_qposadr[h]) for h in hinges)]
-    postures = np.array([motion.sample(t)[0][addresses] for t in _times(motion, position_rate)])
-    return Scene(motion.name, (dancer, floor), (postures, _floor(motion, root, force_rate)))
+    signals = _postures(motion, root, hinges, position_rate), _floor(motion, root, force_rate)
+    return Scene(motion.name, (dancer, floor), signals)
 
 
 def _joints(model: mujoco.MjModel) -> tuple[int, list[int]]:
@@ -71,6 +73,19 @@ def _times(motion: Motion, rate: float) -> Array:
     if not np.isfinite(rate) or rate <= 0:
         raise MotionError(f"a rate must be above 0, got {rate}")
     return np.arange(int(motion.duration * rate * (1 + 1e-12)) + 1) / rate
+
+
+def _postures(motion: Motion, root: int, hinges: list[int], rate: float) -> Array:
+    """Root, its turn and the hinges, (T, 6 + hinges)."""
+    first = int(motion.model.jnt_qposadr[root])
+    bends = [int(motion.model.jnt_qposadr[hinge]) for hinge in hinges]
+    times = _times(motion, rate)
+    rows = np.empty((len(times), 6 + len(bends)))
+    for row, t in zip(rows, times, strict=True):
+        qpos, _, _ = motion.sample(t)
+        row[:3], row[6:] = qpos[first : first + 3], qpos[bends]
+        mujoco.mju_quat2Vel(row[3:6], qpos[first + 3 : first + 7], 1.0)
+    return rows
 
 
 def _floor(motion: Motion, root: int, rate: float) -> Array:

@@ -139,4 +139,7 @@ def _take(signal: Array, holding: Holding, held: Array, first: int) -> None:
     """Copy the samples that first stand in `held`, which begins at frame `first`."""
     start = min(holding.samples_before(first), len(signal))
     stop = min(holding.samples_before(first + len(held)), len(signal))
-    signal[start:stop] = held[holding.first_frames(start, stop) - first]
+    if holding.frames == holding.samples:
+        signal[start:stop] = held[start - first : stop - first]
+    else:
+        signal[start:stop] = held[holding.first_frames(start, stop) - first]

@@ -153,6 +153,9 @@ def test_a_dance_has_positions_and_forces_at_their_own_rates() -> None:
     time, bent = scene.channel("dancer", "hinge")
     np.testing.assert_allclose(bent[:, 0], np.sin(3 * time), atol=1e-12)
     np.testing.assert_allclose(scene.channel("dancer", "root")[1][:, 0], 0.3 * time, atol=1e-12)
+    turn = scene.channel("dancer", "root turn")[1]
+    np.testing.assert_allclose(np.exp(1j * turn[:, 2]), np.exp(1.3j * time), atol=1e-9)
+    np.testing.assert_allclose(turn[:, :2], 0, atol=1e-12)
 
 
 def test_the_floor_gives_what_moves_the_centre_of_mass() -> None:
