@@ -45,7 +45,8 @@ def write_scene(scene: Scene, path: str | Path, encoding: Encoding | None = None
         encoding: How numbers are stored; float64 where None.
 
     Raises:
-        FormatError: The file can't hold the scene, or can't be written.
+        FormatError: The file can't hold the scene, or its disk can't.
+        EnpointeError: The file can't be written there.
     """
     rate = scene.rate
     holdings = [Holding.of(rate, unit.rate) for unit in scene.units]
@@ -73,6 +74,8 @@ def write_scene(scene: Scene, path: str | Path, encoding: Encoding | None = None
                 writer.append(block)
     except MotionError as error:
         raise FormatError(str(error), path) from None
+    except FormatError as error:
+        raise FormatError(error.message, path) from None
 
 
 def _blocks(scene: Scene, holdings: list[Holding], frames: int, size: int) -> Iterator[Array]:

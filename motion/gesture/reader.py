@@ -48,6 +48,8 @@ class GestureReader:
         self._path = Path(path)
         self._unsigned = unsigned
         try:
+            if self._path.exists() and not self._path.is_file():
+                raise OSError("it is no ordinary file")
             self._file = self._path.open("rb")
         except (OSError, ValueError) as error:
             raise FormatError(f"can't be read ({error})", path) from None

@@ -10,20 +10,20 @@ CHUNKS = (b"FORM", b"GST ", b"VERS", b"SCEN", b"UNIT", b"CHAN", b"FRAM", b"MEAS"
 NASTY = (0, 1, 2, 3, 7, 8, 9, 0x7F, 0xFF, 0xFFFF, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFE, 0xFFFFFFFF)
 
 
-def chunks_of(data: bytes) -> list[bytes]:
-    """The chunks in a well-made form of the high byte first, each whole."""
+def chunks_of(data: bytes, mark: str = ">") -> list[bytes]:
+    """The chunks in a well-made form, each whole."""
     found, at = [], 12
     while at < len(data):
-        (size,) = struct.unpack_from(">I", data, at + 4)
+        (size,) = struct.unpack_from(mark + "I", data, at + 4)
         found.append(data[at : at + 8 + size])
         at += 8 + size
     return found
 
 
-def form_of(chunks: list[bytes]) -> bytes:
+def form_of(chunks: list[bytes], mark: str = ">") -> bytes:
     """A form of these chunks."""
     content = b"GST " + b"".join(chunks)
-    return b"FORM" + struct.pack(">I", len(content)) + content
+    return b"FORM" + struct.pack(mark + "I", len(content)) + content
 
 
 def mutated(data: bytes, rng: np.random.Generator) -> bytes:

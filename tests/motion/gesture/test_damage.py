@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import struct
 import tracemalloc
 from pathlib import Path
@@ -24,6 +25,7 @@ from enpointe.motion.gesture import (
     read_scene,
     write_scene,
 )
+from enpointe.motion.gesture.encoding import Order
 
 from .damaging import chunks_of, form_of, mutated
 from .scenes import assert_same, keyboard, read_all, scenes
@@ -48,10 +50,10 @@ def rated() -> Scene:
 @pytest.mark.parametrize("block", [None, 64], ids=["plain", "in blocks"])
 @pytest.mark.parametrize("order", ["big", "little"])
 def test_a_file_cut_at_any_byte_gives_back_all_whole_frames(
-    block: int | None, order: str, tmp_path: Path
+    block: int | None, order: Order, tmp_path: Path
 ) -> None:
     scene, path = keyboard(), tmp_path / "cut.gst"
-    encoding = Encoding(order="little" if order == "little" else "big", block_size=block)
+    encoding = Encoding(order=order, block_size=block)
     whole = stored(scene, tmp_path, encoding)
     start = whole.index(b"FRAM") + 8
     for size in range(len(whole)):
@@ -89,16 +91,17 @@ def test_slower_units_of_a_cut_file_have_the_samples_that_begin_in_it(tmp_path: 
         assert [len(signal) for signal in found.signals] == [frames, samples]
 
 
+@pytest.mark.parametrize("order", ["big", "little"])
 @pytest.mark.parametrize("content", [b"", b"\1", b"abc\0defg", b"x" * 9999], ids=len)
 def test_an_unknown_chunk_at_any_place_is_left_aside_and_listed(
-    content: bytes, tmp_path: Path
+    content: bytes, order: Order, tmp_path: Path
 ) -> None:
-    path = tmp_path / "more.gst"
-    chunks = chunks_of(stored(rated(), tmp_path))
+    path, mark = tmp_path / "more.gst", ">" if order == "big" else "<"
+    chunks = chunks_of(stored(rated(), tmp_path, Encoding(order=order)), mark)
     # By IFF's rule a byte that the size does not count makes an odd chunk even.
-    note = b"NOTE" + struct.pack(">I", len(content)) + content + bytes(len(content) % 2)
+    note = b"NOTE" + struct.pack(mark + "I", len(content)) + content + bytes(len(content) % 2)
     for place in range(len(chunks) + 1):
-        path.write_bytes(form_of([*chunks[:place], note, *chunks[place:]]))
+        path.write_bytes(form_of([*chunks[:place], note, *chunks[place:]], mark))
         with GestureReader(path) as reader:
             found, warnings, lost = reader.scene(), reader.warnings, reader.lost
         assert_same(found, rated())
@@ -262,7 +265,8 @@ def test_a_million_tiny_chunks_are_refused(tmp_path: Path) -> None:
 
 
 def test_no_file_at_all(tmp_path: Path) -> None:
-    for path in (tmp_path / "none.gst", tmp_path):
+    os.mkfifo(tmp_path / "pipe.gst")
+    for path in (tmp_path / "none.gst", tmp_path, tmp_path / "pipe.gst", Path("/dev/null")):
         with pytest.raises(FormatError, match="can't be read"):
             read_scene(path)
     (tmp_path / "empty.gst").touch()
@@ -288,12 +292,11 @@ def read_or_refuse(path: Path) -> bool:
 @settings(max_examples=80, suppress_health_check=[HealthCheck.too_slow])
 @given(scenes(most_samples=4), st.integers(0, 2**32), st.sampled_from(["big", "little"]))
 def test_a_broken_file_is_read_or_refused_with_its_byte(
-    scene: Scene, seed: int, order: str
+    scene: Scene, seed: int, order: Order
 ) -> None:
     rng = np.random.default_rng(seed)
     with TemporaryDirectory() as folder:
-        encoding = Encoding(order="little" if order == "little" else "big")
-        whole = stored(scene, Path(folder), encoding)
+        whole = stored(scene, Path(folder), Encoding(order=order))
         for _ in range(20):
             (Path(folder) / "broken.gst").write_bytes(mutated(whole, rng))
             read_or_refuse(Path(folder) / "broken.gst")

@@ -21,6 +21,7 @@ from enpointe.motion.gesture import (
     read_scene,
     write_scene,
 )
+from enpointe.motion.gesture.encoding import Order
 from enpointe.motion.gesture.holding import Holding
 
 from .scenes import ENCODINGS, RATES, assert_same, keyboard, read_all, scenes
@@ -42,9 +43,9 @@ def test_floats_come_back_to_their_last_digit(scene: Scene, encoding: Encoding) 
 
 
 @given(scenes(), st.floats(1.0, 1e6), st.sampled_from(["big", "little"]))
-def test_integers_come_back_within_half_a_step(scene: Scene, room: float, order: str) -> None:
+def test_integers_come_back_within_half_a_step(scene: Scene, room: float, order: Order) -> None:
     largest = max((abs(s).max() for s in scene.signals if s.size), default=0.0) * room
-    encoding = Encoding.integers(largest, "little" if order == "little" else "big")
+    encoding = Encoding.integers(largest, order)
     with TemporaryDirectory() as folder:
         write_scene(scene, Path(folder) / "any.gst", encoding)
         found = read_scene(Path(folder) / "any.gst")
