@@ -33,6 +33,7 @@ __all__ = [
     "DIMENSIONS",
     "FILLER",
     "LARGEST",
+    "MOST_CHUNKS",
     "VARIABLES",
     "Head",
     "filler",
@@ -41,6 +42,9 @@ __all__ = [
 
 LARGEST = 2**32 - 1
 """What a ULONG holds; no file is longer."""
+MOST_CHUNKS = 65_536
+"""In a file: what a reader goes through before it takes a file for nonsense."""
+_OTHER_CHUNKS = 16
 FILLER = b"    "
 DIMENSIONS = {
     1: Dimension.SCALAR,
@@ -115,6 +119,9 @@ def head_of(
     """
     if not units:
         raise MotionError("a gesture file needs one unit at least")
+    described = len(units) + sum(len(unit.channels) for unit in units)
+    if described > MOST_CHUNKS - _OTHER_CHUNKS:
+        raise MotionError(f"{described} units and channels; a file holds 65520 together")
     mark = encoding.mark
     frame_bytes = sum(unit.width for unit in units) * encoding.size
     block = min(encoding.block_size or frame_bytes, LARGEST)

@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from enpointe.errors import FormatError, MotionError
-from enpointe.motion.gesture.chunks import DIMENSIONS, FILLER, VARIABLES
+from enpointe.motion.gesture.chunks import DIMENSIONS, FILLER, MOST_CHUNKS, VARIABLES
 from enpointe.motion.gesture.encoding import CODES, Encoding, Order
 from enpointe.motion.gesture.fields import Fields, Notes
 from enpointe.motion.gesture.holding import Holding
@@ -28,7 +28,6 @@ from enpointe.motion.gesture.scene import Channel, Unit, Variable
 
 __all__ = ["GestureHead", "parse_head"]
 
-_MOST_CHUNKS = 65_536
 _KNOWN = (b"VERS", b"SCEN", b"UNIT", b"CHAN", b"FRAM", b"MEAS", b"RATE", FILLER)
 _LATER = "stands after the frames, which must have their channels before them"
 
@@ -133,8 +132,8 @@ class _HeadParser:
         position, seen = 12, 0
         while not self._at_end(position):
             seen += 1
-            if seen > _MOST_CHUNKS:
-                raise self._error(f"more than {_MOST_CHUNKS} chunks", position)
+            if seen > MOST_CHUNKS:
+                raise self._error(f"more than {MOST_CHUNKS} chunks", position)
             position = self._take(self._chunk_at(position, self._mark))
         if self._frames is None or self._scene is None:
             raise self._error("the file ends before its frames", self._size)
@@ -171,7 +170,7 @@ class _HeadParser:
 
     def _first_version(self, mark: str) -> _Chunk | None:
         position = 12
-        for _ in range(_MOST_CHUNKS):
+        for _ in range(MOST_CHUNKS):
             if position + 8 > self._size:
                 return None
             chunk = self._chunk_at(position, mark)

@@ -134,6 +134,19 @@ def test_a_scene_of_more_than_4_gib_is_refused_before_it_is_written(tmp_path: Pa
     assert not list(tmp_path.iterdir())
 
 
+def test_as_many_channels_as_a_reader_goes_through(tmp_path: Path) -> None:
+    channels = tuple(Channel(f"c{i}", dimension=Dimension.X) for i in range(65_520))
+    for count, fits in ((65_519, True), (65_520, False)):
+        unit = Unit("u", channels[:count], 1.0)
+        scene = Scene("", (unit,), (np.arange(float(count))[np.newaxis],))
+        if fits:
+            write_scene(scene, tmp_path / "wide.gst", Encoding("float32", block_size=512))
+            assert_same(read_scene(tmp_path / "wide.gst"), scene)
+        else:
+            with pytest.raises(FormatError, match="a file holds 65520"):
+                write_scene(scene, tmp_path / "wider.gst")
+
+
 def test_a_file_that_is_there_is_replaced_whole(tmp_path: Path) -> None:
     path = tmp_path / "keys.gst"
     write_scene(keyboard(50), path)
