@@ -22,7 +22,7 @@ from enpointe.motion.formats.content import Content, Format, Payload
 from enpointe.motion.formats.numbers import Spelled, blocks, parsed, tokens
 from enpointe.motion.formats.skeleton import Skeleton, SkeletonMotion
 from enpointe.motion.formats.space import DEGREES
-from enpointe.motion.formats.text import decoded, finite_number, read_raw, refuse_merge_marks
+from enpointe.motion.formats.text import CUT, decoded, finite_number, read_raw, refuse_merge_marks
 from enpointe.motion.formats.writing import skeleton_of, unheld, write_lines
 
 __all__ = ["AMC", "RATE", "companion", "read_amc"]
@@ -164,11 +164,16 @@ class _Body:
         table, first = quick if quick is not None else self.line_by_line(warnings)
         names = self.first_names()
         absent = [name for name in self.places if name not in names]
+        if absent and len(table) == 1:
+            line = self.line + self.raw.count(b"\n", self.start)
+            raise self.error(f"the only frame lacks {absent[0]!r}: is the file whole?", line)
         if absent:
             warnings.append(f"bones at rest that have no line: {' '.join(absent)[:200]}")
         if not self.raw.endswith(b"\n") and len(table) > 1:
             table = table[:-1]
             warnings.append("the file ends within a line: its last frame is left out")
+        elif not self.raw.endswith(b"\n"):
+            warnings.append(CUT)
         return table, first, warnings
 
     def first_names(self) -> dict[str, int]:
@@ -197,9 +202,13 @@ class _Body:
     def quickly(self) -> tuple[NDArray[np.float64], int] | None:
         """All frames, where each has the same lines as the first; else None."""
         names = self.first_names()
-        if any(name not in self.places for name in names) or any(
-            self.places[name].stop - self.places[name].start != count
-            for name, count in names.items()
+        if (
+            not names
+            or any(name not in self.places for name in names)
+            or any(
+                self.places[name].stop - self.places[name].start != count
+                for name, count in names.items()
+            )
         ):
             return None
         pattern = _Pattern(tuple(names), tuple(names.values()))

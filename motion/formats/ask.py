@@ -31,7 +31,7 @@ from enpointe.motion.formats.writing import (
 
 __all__ = ["ASK"]
 
-_BEGINS = re.compile(rb"^[ \t]*HIERARCHY\b", re.IGNORECASE | re.MULTILINE)
+_BEGINS = re.compile(rb"^(?:\xef\xbb\xbf)?[ \t]*HIERARCHY\b", re.IGNORECASE | re.MULTILINE)
 _RATE = 30.0
 _NOTE = "bone "
 _CHANNELS = tuple(f"{axis}rotation" for axis in "ZXY")

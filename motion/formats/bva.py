@@ -21,6 +21,7 @@ from enpointe.motion.formats.convert import flat, upright
 from enpointe.motion.formats.skeleton import IDENTITY, Joint, Skeleton, SkeletonMotion
 from enpointe.motion.formats.space import DEGREES, Space
 from enpointe.motion.formats.text import (
+    CUT,
     finite_number,
     number_table,
     read_text,
@@ -76,11 +77,15 @@ def _sniff(head: bytes) -> bool:
 
 
 def _read(path: Path) -> Content:
-    reader = _Reader(path, read_text(path).split("\n"))
+    text = read_text(path)
+    reader = _Reader(path, text.split("\n"))
+    if not text.endswith("\n"):
+        reader.warnings.append(CUT)
     segments = reader.segments()
     first = segments[0]
-    for segment in segments[1:]:
-        same = float(segment.time) == float(first.time) and segment.units == first.units
+    units = [reader.units(segment) for segment in segments]
+    for segment, measure in zip(segments, units, strict=True):
+        same = float(segment.time) == float(first.time) and measure == units[0]
         if len(segment.values) != len(first.values) or not same:
             raise FormatError(
                 f"{segment.name[:40]!r} has {len(segment.values)} frames of {segment.time} s, "
@@ -93,7 +98,7 @@ def _read(path: Path) -> Content:
         Joint(name, -1, channels=segment.channels, order=_order(segment.channels))
         for name, segment in zip(names, segments, strict=True)
     )
-    metres, radians = reader.units(first)
+    metres, radians = units[0]
     values = np.concatenate([segment.values for segment in segments], axis=1)
     skeleton = Skeleton(joints, Space(metres, radians_per_unit=radians))
     notes = {FRAME_TIME: first.time}
@@ -138,6 +143,8 @@ class _Reader:
         if len(units) != len(channels):
             raise self.error(f"{len(channels)} units expected, got {len(units)}", self.at)
         values = self.values(len(channels), name)
+        if len(values) < declared and self.at == len(self.lines) and self.lines[-1]:
+            raise self.error(f"the file ends within {name[:40]!r}", self.at)
         if len(values) != declared:
             self.warnings.append(
                 f"{name[:40]!r}: Frames says {declared}, there are {len(values)}: these are taken"

@@ -9,6 +9,7 @@ angles are degrees, y is up.
 from __future__ import annotations
 
 import re
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +21,7 @@ from enpointe.motion.formats.convert import depth_first, plain
 from enpointe.motion.formats.skeleton import Joint, Skeleton, SkeletonMotion
 from enpointe.motion.formats.space import DEGREES, Space
 from enpointe.motion.formats.text import (
+    CUT,
     decoded,
     finite_number,
     number_block,
@@ -43,7 +45,7 @@ from enpointe.motion.formats.writing import (
 
 __all__ = ["BVH"]
 
-_BEGINS = re.compile(rb"^[ \t]*HIERARCHY\b", re.IGNORECASE | re.MULTILINE)
+_BEGINS = re.compile(rb"^(?:\xef\xbb\xbf)?[ \t]*HIERARCHY\b", re.IGNORECASE | re.MULTILINE)
 _MOTION = re.compile(rb"^[ \t]*MOTION\b", re.IGNORECASE | re.MULTILINE)
 _SETTING = re.compile(r"\s*(frames|frame\s*time)\s*:?\s*(.*?)\s*$", re.IGNORECASE)
 
@@ -144,18 +146,18 @@ def _frames(
     raw: bytes, start: int, line: int, width: int, declared: int, path: Path
 ) -> tuple[NDArray[np.float64], list[str]]:
     """The rows of numbers, and what had to be mended."""
-    what = "a frame"
-    last = raw.rfind(b"\n", start, len(raw.rstrip())) + 1 or len(raw)
-    cut = raw[max(last, start) :].split()
     warnings = []
-    if last > start and len(cut) < width and declared * width > len(cut):
-        values, mended = _whole_or_broken(raw, last, start, line, width, declared, path)
-        warnings += mended
+    try:
+        values = number_block(raw, width, path, line, "a frame", start)
+    except FormatError as problem:
+        values, mended = _mended(raw, start, line, width, declared, problem)
+        warnings.append(mended)
     else:
-        values = number_block(raw, width, path, line, what, start)
-        if len(values) < declared and not raw.endswith(b"\n") and len(values) > 1:
+        if not raw.endswith(b"\n") and len(values) < declared:
             values = values[:-1]
             warnings.append("the file ends within its last line: that frame is left out")
+        elif not raw.endswith(b"\n"):
+            warnings.append(CUT)
     if not len(values):
         raise FormatError("there are no frames", path, line=line)
     if len(values) != declared:
@@ -163,21 +165,21 @@ def _frames(
     return values, warnings
 
 
-def _whole_or_broken(
-    raw: bytes, last: int, start: int, line: int, width: int, declared: int, path: Path
-) -> tuple[NDArray[np.float64], list[str]]:
-    """Frames of a file whose last line is short: it was cut, or its frames go over lines."""
-    try:
-        values = number_block(raw[:last], width, path, line, "a frame", start)
-    except FormatError as problem:
-        try:
-            values = number_block(raw, width, path, line, "a frame", start, broken=True)
-        except FormatError:
-            raise problem from None
-        if len(values) != declared:
-            raise problem from None
-        return values, ["frames go over several lines: put together by their number of values"]
-    return values, ["the file ends within a frame: that frame is left out"]
+def _mended(
+    raw: bytes, start: int, line: int, width: int, declared: int, problem: FormatError
+) -> tuple[NDArray[np.float64], str]:
+    """Frames of a file whose frames go over lines, or whose last line is short: it was cut."""
+    path = Path(problem.file)
+    with suppress(FormatError):
+        values = number_block(raw, width, path, line, "a frame", start, broken=True)
+        if len(values) == declared:
+            return values, "frames go over several lines: put together by their number of values"
+    last = max(raw.rfind(b"\n", start, len(raw.rstrip())) + 1, start)
+    if not raw.endswith(b"\n") and len(raw[last:].split()) < width:
+        with suppress(FormatError):
+            values = number_block(raw[:last], width, path, line, "a frame", start)
+            return values, "the file ends within a frame: that frame is left out"
+    raise problem
 
 
 def _write(payload: Payload, path: Path) -> tuple[str, ...]:

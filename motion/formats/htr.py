@@ -22,6 +22,7 @@ from enpointe.motion.formats.htr_writing import write_gtr, write_htr
 from enpointe.motion.formats.skeleton import IDENTITY, Joint, Skeleton, SkeletonMotion
 from enpointe.motion.formats.space import DEGREES, Space
 from enpointe.motion.formats.text import (
+    CUT,
     finite_number,
     number_table,
     read_text,
@@ -126,7 +127,7 @@ class _Reader:
         if declared != len(parents):
             self.warnings.append(f"NumSegments says {declared}, there are {len(parents)}")
         if not self.whole:
-            self.warnings.append("the file ends without [EndOfFile]; all segments are whole")
+            self.warnings.append(f"no [EndOfFile]: {CUT}")
         space, notes = self.space(header)
         order = self.order(header)
         long_axis = notes.get("BoneLengthAxis", "Y").upper()

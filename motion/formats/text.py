@@ -11,6 +11,7 @@ from enpointe.errors import FormatError
 from enpointe.motion.formats.numbers import blocks, parsed, tokens
 
 __all__ = [
+    "CUT",
     "decoded",
     "finite_number",
     "number_block",
@@ -20,6 +21,9 @@ __all__ = [
     "refuse_merge_marks",
     "whole_number",
 ]
+
+CUT = "the file ends within a line: its last number may be cut short"
+"""The warning about text without a line end, in which nothing else shows a cut."""
 
 _LARGEST_COUNT = 10**9
 _MERGE_MARKS = ("<<<<<<<", "=======", ">>>>>>>")
@@ -150,7 +154,9 @@ def number_block(
         wrong = np.flatnonzero(counts > width if broken else (counts != width) & (counts != 0))
         values, bad = parsed(words)
         if bad is not None and (not len(wrong) or bad < counts[: wrong[0]].sum()):
-            at = line + int(np.searchsorted(np.cumsum(counts), bad, side="right"))
+            row = int(np.searchsorted(np.cumsum(counts), bad, side="right"))
+            at = line + row
+            refuse_merge_marks(words.text(int(counts[:row].sum())), path, at)
             finite_number(words.text(bad), path, at, f"each value of {what}")
         if len(wrong):
             place = int(counts[: wrong[0]].sum())
