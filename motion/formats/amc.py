@@ -97,7 +97,7 @@ def read_amc(path: Path, skeleton: Path, rate: float | None = None) -> Content:
     """
     found = read_figure(skeleton)
     raw = read_raw(path)
-    if raw.count(b"\r") != raw.count(b"\r\n"):
+    if b"\r" in raw and raw.count(b"\r") != raw.count(b"\r\n"):
         raw = raw.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     flags, start, line = _header(raw, path)
     warnings = list(found.warnings)
