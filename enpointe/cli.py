@@ -241,6 +241,56 @@ def check(
 
 @app.command()
 @unbundled
+def convert(
+    source: Annotated[
+        Path,
+        typer.Argument(
+            metavar="IN", help="A motion file of any format, or one that perform wrote (.npz)."
+        ),
+    ],
+    target: Annotated[Path, typer.Argument(metavar="OUT", help="Its ending names the format.")],
+    *,
+    to: Annotated[
+        str | None, typer.Option(metavar="FORMAT", help="The format of OUT, whatever its ending.")
+    ] = None,
+    rate: Annotated[
+        float | None, typer.Option(help="Frames a second to write; those of IN if left out.")
+    ] = None,
+    source_rate: Annotated[
+        float | None, typer.Option(help="Frames a second of IN, where its file does not say.")
+    ] = None,
+    unit: Annotated[
+        str | None, typer.Option(help="Of the lengths in OUT: m, cm, mm or in.")
+    ] = None,
+    names: Annotated[
+        Path | None, typer.Option(help="An MNM file with other names for joints or markers.")
+    ] = None,
+    dancer: DancerOptions,
+    json: Json = False,
+    quiet: Quiet = False,
+    seed: Seed = 0,
+) -> int:
+    """Write a motion file in another format, and say what that can't hold."""
+    console = Console(json=json, quiet=quiet)
+    converted = enpointe.convert(
+        source,
+        target,
+        to=to,
+        rate=rate,
+        source_rate=source_rate,
+        unit=unit,
+        names=names,
+        dancer=dancer.anthropometry(),
+    )
+    if json:
+        console.print_json(converted.summary())
+    else:
+        console.print(rows(converted.lines()))
+    return DONE
+
+
+@app.command()
+@unbundled
 def sweep(
     source: Score,
     *,

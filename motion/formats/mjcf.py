@@ -71,7 +71,8 @@ def read_keyframes(path: Path, model: mujoco.MjModel) -> Motion:
     try:
         if all(row is not None for row in keys.qvel):
             qvel = np.array(keys.qvel)
-            qacc = np.gradient(qvel, time, axis=0) if (np.diff(time) > 0).all() else qvel
+            with np.errstate(all="ignore"):  # what is no number is refused with the motion
+                qacc = np.gradient(qvel, time, axis=0) if (np.diff(time) > 0).all() else qvel
             return Motion(model, time, qpos, qvel, qacc, name=keys.name)
         return Motion.from_qpos(model, time, qpos, name=keys.name)
     except MotionError as error:
