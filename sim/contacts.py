@@ -57,7 +57,8 @@ class ContactReader:
         if pairs != self._pairs:
             self._sort(pairs)
         for i in self._elsewhere:
-            self._meet(*pairs[i], wrenches[i])
+            first, second = pairs[i]
+            self._meet(first, second, wrenches[i])
         if len(self._bearing):
             np.add.at(self._force, self._rows, self._signs * forces[self._bearing])
             self._depth[self._rows] = np.maximum(-contacts.dist[self._bearing], 0.0)

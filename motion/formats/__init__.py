@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from enpointe.motion.formats.content import Content, Format
 from enpointe.motion.formats.markers import Analog, Label, MarkerMotion
+from enpointe.motion.formats.registry import formats, read, write
 from enpointe.motion.formats.skeleton import Joint, Skeleton, SkeletonMotion
 from enpointe.motion.formats.space import Space
 
@@ -17,4 +18,7 @@ __all__ = [
     "Skeleton",
     "SkeletonMotion",
     "Space",
+    "formats",
+    "read",
+    "write",
 ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,7 +47,7 @@ class Analog:
     names: tuple[str, ...]
     units: tuple[str, ...]
     rate: float
-    values: Array
+    values: NDArray[np.floating[Any]]
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,7 @@ class MarkerMotion:
         space: Units and axes.
         start: Number of the first frame in the file.
         orientations: (T, M, 4), quaternions w x y z, where the system measures them.
-        residuals: (T, M), file units, where the file has them.
+        residuals: (T, M), file units, NaN where a marker was not seen, where the file has them.
         cameras: (T, M) bit masks of the cameras that saw a marker, where the file has them.
         analog: Signals beside the markers.
         labels: Moments that the file names, in order of time.
@@ -73,7 +74,7 @@ class MarkerMotion:
     space: Space = field(default_factory=Space)
     start: int = 1
     orientations: Array | None = None
-    residuals: Array | None = None
+    residuals: NDArray[np.floating[Any]] | None = None
     cameras: NDArray[np.uint8] | None = None
     analog: Analog | None = None
     labels: tuple[Label, ...] = ()
@@ -108,5 +109,5 @@ class MarkerMotion:
     @property
     def seen(self) -> NDArray[np.bool_]:
         """(T, M), whether a marker has a position."""
-        seen: NDArray[np.bool_] = np.isfinite(self.positions).all(axis=2)
+        seen: NDArray[np.bool_] = np.all(np.isfinite(self.positions), axis=2)
         return seen

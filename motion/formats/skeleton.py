@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +13,7 @@ from scipy.spatial.transform import Rotation
 from enpointe.errors import MotionError
 from enpointe.motion.formats.space import Space
 
-__all__ = ["CHANNELS", "Joint", "Skeleton", "SkeletonMotion"]
+__all__ = ["CHANNELS", "IDENTITY", "Joint", "Skeleton", "SkeletonMotion"]
 
 Array = NDArray[np.float64]
 CHANNELS = (
@@ -19,7 +21,7 @@ CHANNELS = (
     *(f"{axis}rotation" for axis in "XYZ"),
     *(f"{axis}scale" for axis in "XYZ"),
 )
-_IDENTITY = (1.0, 0.0, 0.0, 0.0)
+IDENTITY = (1.0, 0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,11 +32,14 @@ class Joint:
         name: As in the file.
         parent: Index of the parent in the skeleton, or -1; always smaller than the joint's own.
         offset: From the parent's origin, in the parent's frame, file units.
-        channels: Names out of `CHANNELS`, in the order in which the file has them. Rotations are
-            intrinsic: the first named is applied outermost, R = R_first @ R_second @ R_third.
-        axis: Quaternion w x y z of the frame in which the channels turn, in the parent's frame
-            at rest (ASF's `axis`, HTR's base rotation); a joint's rotation is
-            axis @ channels @ axis^-1 before its parent's.
+        channels: Names out of `CHANNELS`, in the order in which the file has them.
+        order: Letters of the axes in the order in which their rotations are multiplied, the first
+            outermost: "ZXY" is R = Rz @ Rx @ Ry. Empty where that is the order of the channels
+            (BVH); ASF applies the first channel innermost, BVA lists X Y Z and multiplies ZXY.
+        axis: Quaternion w x y z of the frame in which the channels turn, in the joint's frame at
+            rest (ASF's `axis`).
+        rest: Quaternion w x y z of the joint's frame at rest in its parent's (HTR's base
+            position). The joint's rotation is rest @ axis @ R @ axis^-1.
         ends: Offsets of end sites in the joint's frame, file units.
         limits: One (low, high) a channel, file units, or empty where the file has none.
     """
@@ -43,9 +48,26 @@ class Joint:
     parent: int
     offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
     channels: tuple[str, ...] = ()
-    axis: tuple[float, float, float, float] = _IDENTITY
+    order: str = ""
+    axis: tuple[float, float, float, float] = IDENTITY
+    rest: tuple[float, float, float, float] = IDENTITY
     ends: tuple[tuple[float, float, float], ...] = ()
     limits: tuple[tuple[float, float], ...] = ()
+
+    @property
+    def turning(self) -> tuple[str, ...]:
+        """Axes of the rotation channels, as the file has them."""
+        return tuple(c[0] for c in self.channels if c.endswith("rotation"))
+
+    @property
+    def product(self) -> str:
+        """Axes in the order in which their rotations are multiplied, the first outermost."""
+        return self.order or "".join(self.turning)
+
+    @property
+    def plain(self) -> bool:
+        """Whether the channels, in the file's order, are the joint's whole rotation."""
+        return self.product == "".join(self.turning) and self.axis == IDENTITY == self.rest
 
 
 @dataclass(frozen=True)
@@ -69,18 +91,19 @@ class Skeleton:
         Raises:
             MotionError: A parent after its child, a name twice, a channel that there is not.
         """
-        names = [joint.name for joint in self.joints]
-        if not names:
+        if not self.joints:
             raise MotionError("a skeleton needs one joint at least")
-        if len(set(names)) < len(names):
-            twice = next(name for name in names if names.count(name) > 1)
-            raise MotionError(f"two joints are called {twice!r}")
+        name, times = Counter(joint.name for joint in self.joints).most_common(1)[0]
+        if times > 1:
+            raise MotionError(f"two joints are called {name!r}")
         for index, joint in enumerate(self.joints):
             if not -1 <= joint.parent < index:
                 raise MotionError(f"the parent of {joint.name!r} must come before it")
             strange = [c for c in joint.channels if c not in CHANNELS]
             if strange or len(set(joint.channels)) < len(joint.channels):
                 raise MotionError(f"{joint.name!r} has channels {joint.channels}; see CHANNELS")
+            if sorted(joint.product) != sorted(joint.turning):
+                raise MotionError(f"{joint.name!r} can't turn {joint.product} by {joint.turning}")
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -90,12 +113,24 @@ class Skeleton:
     @property
     def width(self) -> int:
         """Number of channels of all joints."""
-        return sum(len(joint.channels) for joint in self.joints)
+        return int(self._firsts[-1])
+
+    @cached_property
+    def _firsts(self) -> NDArray[np.intp]:
+        return np.cumsum([0, *(len(joint.channels) for joint in self.joints)])
+
+    @cached_property
+    def children(self) -> tuple[tuple[int, ...], ...]:
+        """Of each joint, the joints that hang on it."""
+        found: list[list[int]] = [[] for _ in self.joints]
+        for index, joint in enumerate(self.joints):
+            if joint.parent >= 0:
+                found[joint.parent].append(index)
+        return tuple(tuple(each) for each in found)
 
     def columns(self, joint: int) -> slice:
         """Where a joint's channels stand in a row of values."""
-        first = sum(len(earlier.channels) for earlier in self.joints[:joint])
-        return slice(first, first + len(self.joints[joint].channels))
+        return slice(int(self._firsts[joint]), int(self._firsts[joint + 1]))
 
 
 @dataclass(frozen=True)
@@ -151,7 +186,11 @@ class SkeletonMotion:
         return translations, rotations
 
     def world(self) -> tuple[Array, Array]:
-        """Every joint in the file's world: positions (T, J, 3), file units, quaternions (T, J, 4)."""
+        """Every joint in the file's world.
+
+        Returns:
+            Positions (T, J, 3) in file units and rotations (T, J, 4) as quaternions w x y z.
+        """
         translations, rotations = self.local()
         for index, joint in enumerate(self.skeleton.joints):
             if joint.parent < 0:
@@ -176,10 +215,11 @@ class SkeletonMotion:
     def _rotation(self, joint: Joint, values: Array) -> Array:
         turning = [i for i, c in enumerate(joint.channels) if c.endswith("rotation")]
         if not turning:
-            return np.tile(_IDENTITY, (self.frames, 1))
-        order = "".join(joint.channels[i][0] for i in turning)
+            return np.tile(joint.rest, (self.frames, 1))
         angles = values[:, turning] * self.skeleton.space.radians_per_unit
-        turned = Rotation.from_euler(order, angles if len(turning) > 1 else angles[:, 0])
+        columns = [joint.turning.index(axis) for axis in joint.product]
+        turned = Rotation.from_euler(joint.product, angles[:, columns])
+        rest = Rotation.from_quat(joint.rest, scalar_first=True)
         frame = Rotation.from_quat(joint.axis, scalar_first=True)
-        whole: Array = (frame * turned * frame.inv()).as_quat(scalar_first=True)
+        whole: Array = (rest * frame * turned * frame.inv()).as_quat(scalar_first=True)
         return whole

@@ -1,0 +1,149 @@
+"""Tables of numbers in text, with gaps where something was not seen."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from enpointe.errors import FormatError
+
+__all__ = ["MISSING", "MOST_MARKERS", "column_table", "gap_warnings", "number_text"]
+
+Array = NDArray[np.float64]
+MOST_MARKERS = 100_000
+"""More than any system follows: a file that has more is no file of markers."""
+MISSING = frozenset({"", "nan", "-nan", "+nan", "n/a", "dropout"})
+
+
+def column_table(
+    lines: list[str],
+    width: int,
+    path: Path,
+    first_line: int,
+    what: str,
+    *,
+    delimiter: str | None = None,
+    needed: int = 0,
+) -> Array:
+    """Lines of `width` columns as numbers; a gap becomes NaN.
+
+    A line that ends early has gaps at its end, unless columns are parted by blanks, where a gap
+    can't be told from the next column: there every line needs all of them. More columns than
+    `width` are an error; so are blanks in the first `needed`, and infinities.
+
+    Args:
+        lines: The text; blank lines are passed over.
+        width: Columns in a line.
+        path: The file, for messages.
+        first_line: Line of the first in the file, from 1.
+        what: What a line is, for messages.
+        delimiter: Between columns; None for any blanks.
+        needed: Columns at the start that have to be there.
+
+    Returns:
+        (lines that are not blank, width).
+
+    Raises:
+        FormatError: With the line.
+    """
+    filled = lines if delimiter is None else _filled(lines, width, delimiter)
+    table = _fast_table(filled, width, delimiter) if any(lines) else np.empty((0, width))
+    if table is not None and not np.isinf(table).any() and not np.isnan(table[:, :needed]).any():
+        return table
+    return _slow_table(lines, width, path, first_line, what, delimiter, needed)
+
+
+def gap_warnings(lines: list[str], width: int, delimiter: str | None, points: Array) -> list[str]:
+    """What is doubtful about gaps: rows that end early, and points that lack a coordinate.
+
+    Args:
+        lines: The text of the rows.
+        width: Columns in a row.
+        delimiter: Between columns; None for any blanks.
+        points: (T, M, 3), as read.
+    """
+    found = []
+    ending = 0
+    if delimiter is not None:
+        ending = sum(line.count(delimiter) < width - 1 for line in lines if line.strip())
+    if ending:
+        found.append(f"{ending} rows end early; what they lack is taken as not seen")
+    finite = np.isfinite(points)
+    partly = int((finite.any(axis=2) & ~finite.all(axis=2)).sum())
+    if partly:
+        found.append(f"{partly} points lack a coordinate and are taken as not seen")
+    return found
+
+
+def number_text(value: float) -> str:
+    """The shortest text that reads back as the same number; "" for NaN."""
+    if value != value:  # only NaN differs from itself
+        return ""
+    text = repr(float(value))
+    return text[:-2] if text.endswith(".0") else text
+
+
+def _filled(lines: list[str], width: int, delimiter: str) -> Iterator[str]:
+    """The lines with nan where nothing stands, so that the fast reader can take them."""
+    double, gap = delimiter * 2, f"{delimiter}nan"
+    for line in lines:
+        kept = line.rstrip()
+        if not kept:
+            continue
+        if double in kept:
+            kept = kept.replace(double, f"{gap}{delimiter}").replace(double, f"{gap}{delimiter}")
+        missing = width - 1 - kept.count(delimiter)
+        yield kept + gap * missing if missing else kept
+
+
+def _fast_table(lines: Iterable[str], width: int, delimiter: str | None) -> Array | None:
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            table: Array = np.loadtxt(lines, delimiter=delimiter, comments=None, ndmin=2)
+    except (ValueError, OverflowError, UserWarning):
+        return None
+    return table if table.shape[1] == width else None
+
+
+def _slow_table(
+    lines: list[str],
+    width: int,
+    path: Path,
+    first_line: int,
+    what: str,
+    delimiter: str | None,
+    needed: int,
+) -> Array:
+    rows = []
+    for number, line in enumerate(lines, start=first_line):
+        if not line.strip():
+            continue
+        fields = line.rstrip().split(delimiter)
+        if len(fields) > width or (delimiter is None and len(fields) < width):
+            raise FormatError(f"{what} needs {width} columns, got {len(fields)}", path, line=number)
+        row = np.full(width, np.nan)
+        for column, field in enumerate(fields):
+            row[column] = _number(field.strip(), path, number, what, column)
+        if np.isnan(row[:needed]).any():
+            raise FormatError(f"{what} lacks one of its first {needed} numbers", path, line=number)
+        rows.append(row)
+    return np.array(rows).reshape(-1, width)
+
+
+def _number(field: str, path: Path, line: int, what: str, column: int) -> float:
+    if field.lower() in MISSING:
+        return float("nan")
+    try:
+        value = float(field)
+    except ValueError:
+        value = float("inf")
+    if not np.isfinite(value):
+        raise FormatError(
+            f"column {column + 1} of {what} must be a number, got {field[:40]!r}", path, line=line
+        )
+    return value

@@ -1,0 +1,210 @@
+"""Decimal numbers out of bytes, many at once and rounded as `float` rounds them.
+
+Numbers of motion files are short decimals: a sign, at most eight digits, a point, at most eight
+more. Such a number is two words of eight characters, each of which becomes an integer in a few
+multiplications (D. Lemire, "Number parsing at a gigabyte per second", Software: Practice and
+Experience 51(8), 2021, section 3), and their quotient by a power of ten is rounded once, hence
+right (W. D. Clinger, "How to read floating point numbers accurately", PLDI 1990). numpy does that
+for a block of numbers together. What is no such number, an exponent say, goes through `float`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["BLOCK", "Spelled", "Tokens", "blocks", "parsed", "tokens"]
+
+BLOCK = 1 << 18
+"""Bytes looked at together: what comes of them still fits a processor's cache."""
+
+_WORD = 8
+_PAD = b" " * _WORD
+_BLANK, _NEWLINE, _MINUS, _POINT = 32, 10, 45, 46
+_ZEROS = np.uint64(0x3030303030303030)
+_SIXES = np.uint64(0x0606060606060606)
+_HIGH = np.uint64(0xF0F0F0F0F0F0F0F0)
+_PAIRS = np.uint64(0x000000FF000000FF)
+_HUNDREDS = np.uint64(0x000F424000000064)
+_UNITS = np.uint64(0x0000271000000001)
+# The last n characters of a word, for n of 0 to 8.
+_LAST = np.array([0, *(~((1 << (64 - 8 * n)) - 1) & (2**64 - 1) for n in range(1, 9))], np.uint64)
+_FILL = ~_LAST & _ZEROS
+_TENS = 10.0 ** np.arange(_WORD + 1)
+_EXACT = 2.0**53
+
+
+@dataclass(frozen=True)
+class Tokens:
+    """Where the words between blanks stand in a block of bytes.
+
+    Attributes:
+        data: The block, eight blanks before and behind it.
+        starts: Where each word starts in `data`.
+        ends: Where each ends, the first byte after it.
+    """
+
+    data: NDArray[np.uint8]
+    starts: NDArray[np.intp]
+    ends: NDArray[np.intp]
+
+    def per_line(self) -> NDArray[np.intp]:
+        """How many words stand on each line of the block."""
+        newlines = np.flatnonzero(self.data == _NEWLINE)
+        before = np.searchsorted(self.starts, np.append(newlines, len(self.data)))
+        return np.diff(before, prepend=0)
+
+    def text(self, index: int) -> str:
+        """One word."""
+        return self.data[self.starts[index] : self.ends[index]].tobytes().decode("ascii", "replace")
+
+    def are(self, chosen: NDArray[np.intp], words: Spelled, which: NDArray[np.intp]) -> bool:
+        """Whether each chosen word is spelled like the one of `words` that `which` names."""
+        starts = self.starts[chosen]
+        if not np.array_equal(self.ends[chosen] - starts, words.lengths[which]):
+            return False
+        at_each = _words_at(self.data)
+        for part in range(words.letters.shape[1]):
+            here = np.minimum(starts + _WORD * part, len(at_each) - 1)
+            same = at_each[here] & words.masks[which, part] == words.letters[which, part]
+            if not same.all():
+                return False
+        return True
+
+
+@dataclass(frozen=True)
+class Spelled:
+    """Words as numbers of eight letters each, to be compared many at once.
+
+    Attributes:
+        lengths: (N,), letters of each word.
+        letters: (N, parts), eight of a word's letters each, the rest 0.
+        masks: (N, parts), which of the eight are the word's.
+    """
+
+    lengths: NDArray[np.intp]
+    letters: NDArray[np.uint64]
+    masks: NDArray[np.uint64]
+
+    @classmethod
+    def of(cls, words: list[bytes]) -> Spelled:
+        """Spells words."""
+        parts = 1 + max(map(len, words), default=0) // _WORD
+        padded = [word.ljust(parts * _WORD, b"\0") for word in words]
+        masks = [(b"\xff" * len(word)).ljust(parts * _WORD, b"\0") for word in words]
+        return cls(
+            np.array([len(word) for word in words], np.intp),
+            np.frombuffer(b"".join(padded), "<u8").reshape(-1, parts),
+            np.frombuffer(b"".join(masks), "<u8").reshape(-1, parts),
+        )
+
+
+def blocks(data: bytes, start: int = 0) -> Iterator[bytes]:
+    """Cuts bytes behind line ends into pieces of about `BLOCK`."""
+    while start < len(data):
+        end = len(data)
+        if end - start > BLOCK:
+            newline = data.find(b"\n", start + BLOCK)
+            end = newline + 1 if newline >= 0 else end
+        yield data[start:end]
+        start = end
+
+
+def tokens(block: bytes) -> Tokens:
+    """The words of a block; blanks are all bytes up to the space."""
+    data = np.frombuffer(_PAD + block + _PAD, np.uint8)
+    blank = data <= _BLANK
+    edges = np.flatnonzero(blank[1:] != blank[:-1]) + 1
+    return Tokens(data, edges[0::2], edges[1::2])
+
+
+def parsed(
+    words: Tokens, chosen: NDArray[np.intp] | NDArray[np.bool_] | slice = slice(None)
+) -> tuple[NDArray[np.float64], int | None]:
+    """The numbers that some words are.
+
+    Args:
+        words: A block's words.
+        chosen: Which of them.
+
+    Returns:
+        The numbers, and the place among the chosen of the first that is no finite number, or None.
+    """
+    starts, ends = words.starts[chosen], words.ends[chosen]
+    negative = words.data[starts] == _MINUS
+    points = _points(words.data, starts, ends)
+    whole = points - starts - negative
+    part = np.maximum(ends - points - 1, 0)
+    fits = (whole <= _WORD) & (part <= _WORD) & (whole + part > 0)
+    if not fits.all():
+        whole, part = np.where(fits, whole, 0), np.where(fits, part, 0)
+    upper, upper_good = _digits(words.data, points, whole)
+    lower, lower_good = _digits(words.data, ends, part)
+    power = _TENS[part]
+    values = upper * power
+    values += lower
+    fits &= upper_good & lower_good & (values < _EXACT)
+    values /= power
+    np.negative(values, out=values, where=negative)
+    odd = np.flatnonzero(~fits)
+    if not len(odd):
+        return values, None
+    values[odd], bad = _one_by_one(words.data.tobytes(), starts[odd], ends[odd])
+    return values, None if bad is None else int(odd[bad])
+
+
+def _one_by_one(
+    data: bytes, starts: NDArray[np.intp], ends: NDArray[np.intp]
+) -> tuple[NDArray[np.float64], int | None]:
+    """Words through `float`, and the place of the first that is no finite number."""
+    words = [data[start:end] for start, end in zip(starts.tolist(), ends.tolist(), strict=True)]
+    values = np.full(len(words), np.nan)
+    try:
+        values[:] = list(map(float, words))
+    except ValueError:
+        for index, word in enumerate(words):
+            try:
+                values[index] = float(word)
+            except ValueError:
+                break
+    values[[b"_" in word for word in words]] = np.nan
+    bad = np.flatnonzero(~np.isfinite(values))
+    return values, int(bad[0]) if len(bad) else None
+
+
+def _points(
+    data: NDArray[np.uint8], starts: NDArray[np.intp], ends: NDArray[np.intp]
+) -> NDArray[np.intp]:
+    """Where each word has its first point; its end where it has none."""
+    points = np.flatnonzero(data == _POINT)
+    if len(points) == len(starts) and ((points >= starts) & (points < ends)).all():
+        return points
+    if not len(points):
+        return ends
+    following = points[np.minimum(np.searchsorted(points, starts), len(points) - 1)]
+    return np.where((following >= starts) & (following < ends), following, ends)
+
+
+def _words_at(data: NDArray[np.uint8]) -> NDArray[np.uint64]:
+    """The eight bytes from each byte on, as one number, without a copy."""
+    return np.lib.stride_tricks.as_strided(
+        data[:_WORD].view("<u8"), (len(data) - _WORD + 1,), (1,), writeable=False
+    )
+
+
+def _digits(
+    data: NDArray[np.uint8], ends: NDArray[np.intp], count: NDArray[np.intp]
+) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """The integers that the `count` characters before `ends` are, and where they are digits."""
+    word = _words_at(data)[ends - _WORD]
+    word &= _LAST[count]
+    word |= _FILL[count]
+    word ^= _ZEROS
+    good = ((word + _SIXES) | word) & _HIGH == 0
+    word = word * np.uint64(10) + (word >> np.uint64(8))
+    high = (word & _PAIRS) * _HUNDREDS
+    low = ((word >> np.uint64(16)) & _PAIRS) * _UNITS
+    return ((high + low) >> np.uint64(32)).astype(np.float64), good
