@@ -12,7 +12,7 @@ import numpy as np
 
 from enpointe.errors import FormatError
 from enpointe.files import write_text
-from enpointe.motion.formats.columns import column_table, number_text
+from enpointe.motion.formats.columns import column_table, gap_warnings, number_text
 from enpointe.motion.formats.content import Content, Format, Payload
 from enpointe.motion.formats.guessing import guessed_space
 from enpointe.motion.formats.holding import left_out, lost_notes, markers_of
@@ -51,12 +51,14 @@ def read_aoa(path: Path) -> Content:
     whole, rest = divmod(len(points), markers)
     if not whole:
         raise FormatError(f"{len(points)} rows are no frame of {markers} markers", path, line=last)
-    warnings, lost = [], []
+    warnings: list[str] = []
+    lost: list[str] = []
     if whole != declared or rest:
         warnings.append(f"frames says {declared}, and there are {whole} whole ones")
     if rest:
         lost.append(f"{rest} markers of a frame that breaks off")
     positions = points[: whole * markers].reshape(whole, markers, 3)
+    warnings += gap_warnings([], 0, None, positions)
     positions[~np.isfinite(positions).all(axis=2)] = np.nan
     space, guesses = guessed_space(positions, "y", None, usual_metres=0.01)
     names = tuple(str(index) for index in range(1, markers + 1))

@@ -240,7 +240,8 @@ def _space(parameters: Parameters, positions: NDArray[np.float64], warnings: lis
     guess, lines = guessed_space(positions, "z", metres)
     screen = "".join(parameters.strings("POINT:Y_SCREEN")[:1]).upper()
     for axis in ("x", "y", "z"):
-        if screen == f"+{axis.upper()}":
+        # Some let the screen's second axis point down, and mean the same.
+        if screen in (f"+{axis.upper()}", f"-{axis.upper()}"):
             warnings.extend(lines[1:])
             return Space(metres_per_unit=guess.metres_per_unit, up=axis)
     warnings.extend(lines)

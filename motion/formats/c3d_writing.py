@@ -91,6 +91,11 @@ def _noted(motion: MarkerMotion, name: str) -> object:
     return found
 
 
+def _noted_string(motion: MarkerMotion, name: str) -> str:
+    found = _noted(motion, name)
+    return str(found[0]) if isinstance(found, list) and len(found) == 1 else ""
+
+
 class _Points:
     """Rows of points, four numbers each."""
 
@@ -230,7 +235,7 @@ def _parameters(
 ) -> dict[str, _Parameter]:
     """All by "GROUP:NAME"; those that describe this file stand before those in the notes."""
     last = max(motion.start, 0) + motion.frames - 1
-    side = motion.notes.get("POINT:X_SCREEN", "")
+    side, up = (_noted_string(motion, f"POINT:{axis}_SCREEN") for axis in "XY")
     found = {
         "POINT:USED": _integers(len(motion.names)),
         "POINT:SCALE": _reals(step),
@@ -238,8 +243,10 @@ def _parameters(
         "POINT:DATA_START": _integers(0),
         "POINT:FRAMES": _integers(min(motion.frames, 65535)),
         "POINT:UNITS": _string(unit),
-        "POINT:X_SCREEN": _string(side[2:4] if len(side) == 6 else _SIDE[motion.space.up]),
-        "POINT:Y_SCREEN": _string(f"+{motion.space.up.upper()}"),
+        "POINT:X_SCREEN": _string(side or _SIDE[motion.space.up]),
+        "POINT:Y_SCREEN": _string(
+            up if up[1:].lower() == motion.space.up else f"+{motion.space.up.upper()}"
+        ),
         "TRIAL:ACTUAL_START_FIELD": _integers([max(motion.start, 0) & 0xFFFF, motion.start >> 16]),
         "TRIAL:ACTUAL_END_FIELD": _integers([last & 0xFFFF, last >> 16]),
         "ANALOG:USED": _integers(analog.channels),

@@ -11,9 +11,11 @@ from numpy.typing import NDArray
 
 from enpointe.errors import FormatError
 
-__all__ = ["MISSING", "column_table", "number_text"]
+__all__ = ["MISSING", "MOST_MARKERS", "column_table", "gap_warnings", "number_text"]
 
 Array = NDArray[np.float64]
+MOST_MARKERS = 100_000
+"""More than any system follows: a file that has more is no file of markers."""
 MISSING = frozenset({"", "nan", "-nan", "+nan", "n/a", "dropout"})
 
 
@@ -53,6 +55,28 @@ def column_table(
     if table is not None and not np.isinf(table).any() and not np.isnan(table[:, :needed]).any():
         return table
     return _slow_table(lines, width, path, first_line, what, delimiter, needed)
+
+
+def gap_warnings(lines: list[str], width: int, delimiter: str | None, points: Array) -> list[str]:
+    """What is doubtful about gaps: rows that end early, and points that lack a coordinate.
+
+    Args:
+        lines: The text of the rows.
+        width: Columns in a row.
+        delimiter: Between columns; None for any blanks.
+        points: (T, M, 3), as read.
+    """
+    found = []
+    ending = 0
+    if delimiter is not None:
+        ending = sum(line.count(delimiter) < width - 1 for line in lines if line.strip())
+    if ending:
+        found.append(f"{ending} rows end early; what they lack is taken as not seen")
+    finite = np.isfinite(points)
+    partly = int((finite.any(axis=2) & ~finite.all(axis=2)).sum())
+    if partly:
+        found.append(f"{partly} points lack a coordinate and are taken as not seen")
+    return found
 
 
 def number_text(value: float) -> str:

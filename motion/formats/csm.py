@@ -14,7 +14,12 @@ from numpy.typing import NDArray
 
 from enpointe.errors import FormatError
 from enpointe.files import write_text
-from enpointe.motion.formats.columns import column_table, number_text
+from enpointe.motion.formats.columns import (
+    MOST_MARKERS,
+    column_table,
+    gap_warnings,
+    number_text,
+)
 from enpointe.motion.formats.content import Content, Format, Payload
 from enpointe.motion.formats.guessing import guessed_space
 from enpointe.motion.formats.holding import left_out, markers_of, plain_names
@@ -38,7 +43,10 @@ def read_csm(path: Path) -> Content:
     """
     lines = read_text(path).split("\n")
     sections, at = _sections(lines, path)
-    names = tuple(" ".join(sections.get("order", (0, []))[1]).split())
+    order = " ".join(sections.get("order", (0, []))[1])
+    if len(order) > 40 * MOST_MARKERS:
+        raise FormatError(f"more than {MOST_MARKERS} markers", path, line=at)
+    names = tuple(order.split())
     if not names:
         raise FormatError("no markers after $Order", path, line=at)
     rows = lines[at:]
@@ -55,6 +63,7 @@ def read_csm(path: Path) -> Content:
     if not table[0, 0].is_integer() or abs(table[0, 0]) > 1e9:
         raise FormatError("a frame's number must be whole", path, line=at + 1)
     positions = table[:, 1:].reshape(len(table), len(names), 3)
+    warnings += gap_warnings([], 0, None, positions)
     positions[~np.isfinite(positions).all(axis=2)] = np.nan
     space, guesses = guessed_space(positions, "z", None)
     kept = {key: _said(said) for key, (_, said) in sections.items() if key not in _TOLD}

@@ -20,7 +20,12 @@ from numpy.typing import NDArray
 
 from enpointe.errors import FormatError, MotionError
 from enpointe.files import write_text
-from enpointe.motion.formats.columns import column_table, number_text
+from enpointe.motion.formats.columns import (
+    MOST_MARKERS,
+    column_table,
+    gap_warnings,
+    number_text,
+)
 from enpointe.motion.formats.content import Content, Format, Payload
 from enpointe.motion.formats.guessing import UNITS, guessed_space, unit_name
 from enpointe.motion.formats.holding import left_out, markers_of
@@ -59,14 +64,13 @@ def read_csv(path: Path) -> Content:
     del lines
     width = len(columns) + 1
     table = column_table(rows, width, path, at + 2, "a row", delimiter=",", needed=1)
-    del rows
     if not len(table):
         raise FormatError("there are no rows", path, line=at + 1)
     rate, warnings = _rate(table[:, 0], told, path)
     try:
         if any(column.channel in CHANNELS for column in columns):
             return _joints(columns, table, rate, told, warnings, path, at + 1)
-        return _markers(columns, table, rate, told, warnings)
+        return _markers(columns, table, rows, rate, told, warnings)
     except MotionError as error:
         raise FormatError(str(error), path, line=at + 1) from None
 
@@ -92,10 +96,13 @@ def write_csv(payload: Payload, path: Path) -> tuple[str, ...]:
         "rate": payload.rate,
         "start": payload.start,
         "up": space.up,
+        "unit": unit,
         "notes": payload.notes,
     }
     if isinstance(payload, MarkerMotion):
         told["events"] = [[e.time, e.name, e.subject, e.context] for e in payload.labels]
+    else:
+        told["angle"] = _angle_name(space)
     text = io.StringIO()
     text.write(_FIRST["markers" if isinstance(payload, MarkerMotion) else "joints"] + "\n")
     for key, value in told.items():
@@ -133,6 +140,8 @@ def _told(lines: list[str], path: Path) -> dict[str, object]:
 
 
 def _columns(line: str, path: Path, number: int) -> list[_Column]:
+    if len(line) > 40 * MOST_MARKERS:
+        raise FormatError(f"more than {MOST_MARKERS} columns", path, line=number)
     try:
         fields = next(csv.reader([line]))
     except (csv.Error, StopIteration):
@@ -184,12 +193,14 @@ def _start(told: dict[str, object], usual: int) -> int:
     return start if isinstance(start, int) and abs(start) < 10**9 else usual
 
 
-def _length_unit(columns: list[_Column], warnings: list[str]) -> float | None:
+def _length_unit(
+    columns: list[_Column], told: dict[str, object], warnings: list[str]
+) -> float | None:
     units = {column.unit for column in columns if column.unit in UNITS}
     if len(units) > 1:
         warnings.append(f"several units of length ({', '.join(sorted(units))}); the first is taken")
     first = next((column.unit for column in columns if column.unit in UNITS), None)
-    return UNITS[first] if first else None
+    return UNITS.get(str(first or told.get("unit")))
 
 
 def _space(
@@ -205,7 +216,12 @@ def _space(
 
 
 def _markers(
-    columns: list[_Column], table: Array, rate: float, told: dict[str, object], warnings: list[str]
+    columns: list[_Column],
+    table: Array,
+    rows: list[str],
+    rate: float,
+    told: dict[str, object],
+    warnings: list[str],
 ) -> Content:
     markers = _grouped(columns)
     found = {column.channel for column in columns}
@@ -225,13 +241,14 @@ def _markers(
                 residuals[:, index] = values
             elif channel == "cameras" and cameras is not None:
                 cameras[:, index] = np.clip(np.nan_to_num(values), 0, 255).astype(np.uint8)
+    warnings += gap_warnings(rows, len(columns) + 1, ",", positions)
     positions[~np.isfinite(positions).all(axis=2)] = np.nan
     strange = sorted({c.channel for c in columns} - {*_POINT, *_TURN, "residual", "cameras"})
     motion = MarkerMotion(
         tuple(name for name, _ in markers),
         rate,
         positions,
-        _space(told, _length_unit(columns, warnings), positions, warnings),
+        _space(told, _length_unit(columns, told, warnings), positions, warnings),
         _start(told, 1),
         orientations=turns,
         residuals=residuals,
@@ -287,12 +304,12 @@ def _joints(
     angles = {column.unit for column in columns if column.unit in _ANGLES}
     if len(angles) > 1:
         raise FormatError("some angles are in deg and some in rad", path, line=line)
-    metres = _length_unit(columns, warnings)
+    metres = _length_unit(columns, told, warnings)
     up = told.get("up")
     space = Space(
         1.0 if metres is None else metres,
         cast(Literal["x", "y", "z"], up) if up in _POINT else "y",
-        _ANGLES["".join(angles) or "deg"],
+        _ANGLES.get("".join(angles) or str(told.get("angle")), DEGREES),
     )
     joints = tuple(Joint(name, -1, channels=tuple(own)) for name, own in channels.items())
     values = table[:, [index for own in order.values() for index in own]]
@@ -321,20 +338,18 @@ def _marker_table(motion: MarkerMotion, unit: str) -> tuple[list[str], Array, li
     return columns, table, left_out(motion, *held)
 
 
+def _angle_name(space: Space) -> str | None:
+    sizes = _ANGLES.items()
+    return next((name for name, size in sizes if np.isclose(size, space.radians_per_unit)), None)
+
+
 def _joint_table(
     motion: SkeletonMotion, unit: str, path: Path
 ) -> tuple[list[str], Array, list[str]]:
     joints = motion.skeleton.joints
     if not motion.frames or not motion.skeleton.width:
         raise FormatError("CSV needs one frame and one channel at least", path)
-    angle = next(
-        (
-            name
-            for name, size in _ANGLES.items()
-            if np.isclose(size, motion.skeleton.space.radians_per_unit)
-        ),
-        None,
-    )
+    angle = _angle_name(motion.skeleton.space)
     if angle is None:
         raise FormatError("CSV needs angles in degrees or radians", path)
     units = {"position": f" [{unit}]", "rotation": f" [{angle}]", "scale": ""}

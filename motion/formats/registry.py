@@ -9,6 +9,7 @@ from enpointe.motion.formats.amc import AMC
 from enpointe.motion.formats.aoa import AOA
 from enpointe.motion.formats.asf import ASF
 from enpointe.motion.formats.ask import ASK
+from enpointe.motion.formats.bap import BAP
 from enpointe.motion.formats.brd import BRD
 from enpointe.motion.formats.bva import BVA
 from enpointe.motion.formats.bvh import BVH
@@ -39,6 +40,7 @@ FORMATS: tuple[Format, ...] = (
     BRD,
     CSV_MARKERS,
     CSV_JOINTS,
+    BAP,
 )
 
 

@@ -16,7 +16,12 @@ from numpy.typing import NDArray
 
 from enpointe.errors import FormatError
 from enpointe.files import write_text
-from enpointe.motion.formats.columns import column_table, number_text
+from enpointe.motion.formats.columns import (
+    MOST_MARKERS,
+    column_table,
+    gap_warnings,
+    number_text,
+)
 from enpointe.motion.formats.content import Content, Format, Payload
 from enpointe.motion.formats.guessing import UNITS, guessed_space, unit_name
 from enpointe.motion.formats.holding import left_out, lost_notes, markers_of, plain_names
@@ -67,11 +72,11 @@ def read_trc(path: Path) -> Content:
         delimiter=head.delimiter,
         needed=2,
     )
-    del rows
     if not len(table):
         raise FormatError("there are no frames after the header", path, line=head.first_row)
     warnings += _doubts(table, head)
     positions = table[:, 2:].reshape(len(table), len(head.names), 3)
+    warnings += gap_warnings(rows, head.width, head.delimiter, positions)
     positions[~np.isfinite(positions).all(axis=2)] = np.nan
     space, guesses = guessed_space(positions, "y", head.metres)
     start = _start(table[0, 0], path, head.first_row + 1)
@@ -176,6 +181,8 @@ def _values(keys: str, values: str, path: Path, line: int) -> dict[str, str]:
 
 
 def _names(line: str, path: Path, number: int) -> tuple[str, ...]:
+    if line.count("\t") > 3 * MOST_MARKERS or len(line) > 40 * MOST_MARKERS:
+        raise FormatError(f"more than {MOST_MARKERS} markers", path, line=number)
     fields = line.split("\t") if "\t" in line else line.split()
     names = tuple(field.strip() for field in fields[2:] if field.strip())
     if not names:
