@@ -12,13 +12,9 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from enpointe.controllers import Controller, WholeBody
-from enpointe.controllers.wholebody.constraints import (
-    Equality,
-    JointRange,
-    TorqueLimits,
-    joint_torques,
-)
+from enpointe.controllers.wholebody.constraints import JointRange, TorqueLimits, joint_torques
 from enpointe.controllers.wholebody.instant import Instant, Observer, skew
+from enpointe.controllers.wholebody.rows import Equality
 from enpointe.controllers.wholebody.tasks import (
     AngularMomentum,
     CentreOfMass,
