@@ -94,6 +94,7 @@ class _Reader:
     def __init__(self, path: Path, lines: list[str]) -> None:
         self.path = path
         self.lines = [line.split("#", 1)[0].strip() for line in lines]
+        self.lost = ("comments",) if any("#" in line for line in lines) else ()
         self.sections = self.split()
         self.warnings: list[str] = []
 
@@ -106,6 +107,8 @@ class _Reader:
             elif line and not starts:
                 refuse_merge_marks(line, self.path, index + 1)
                 raise self.error(f"[Header] expected, got {line[:40]!r}", index + 1)
+        if not starts:
+            raise self.error("[Header] expected, and there is nothing but comments", 1)
         found: dict[str, tuple[int, int]] = {}
         ends = [index for _, index in starts[1:]] + [len(self.lines)]
         for (name, start), end in zip(starts, ends, strict=True):
@@ -116,7 +119,7 @@ class _Reader:
             if key in found:
                 raise self.error(f"[{name[:40]}] for the second time", start + 1)
             found[key] = (start + 1, end)
-        self.whole = bool(starts) and _plain(starts[-1][0]) == "endoffile"
+        self.whole = _plain(starts[-1][0]) == "endoffile"
         return found
 
     def content(self) -> Content:
@@ -139,7 +142,7 @@ class _Reader:
         rate = self.rate(header)
         skeleton = Skeleton(joints, space, positions_replace_offset=False)
         motion = SkeletonMotion(skeleton, rate, values, start=start, notes=notes)
-        return Content(motion, tuple(self.warnings))
+        return Content(motion, tuple(self.warnings), self.lost)
 
     def header(self) -> dict[str, tuple[str, str, int]]:
         """Name as written, value and line of each setting, by its name in small letters."""

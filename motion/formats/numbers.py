@@ -1,7 +1,7 @@
 """Decimal numbers out of bytes, many at once and rounded as `float` rounds them.
 
 Numbers of motion files are short decimals: a sign, at most eight digits, a point, at most eight
-more. Such a number is two words of eight characters, each of which becomes an integer in a few
+more. Such a number is one or two words of eight characters, which become integers in a few
 multiplications (D. Lemire, "Number parsing at a gigabyte per second", Software: Practice and
 Experience 51(8), 2021, section 3), and their quotient by a power of ten is rounded once, hence
 right (W. D. Clinger, "How to read floating point numbers accurately", PLDI 1990). numpy does that
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 __all__ = ["BLOCK", "Spelled", "Tokens", "blocks", "parsed", "tokens"]
 
-BLOCK = 1 << 18
+BLOCK = 1 << 16
 """Bytes looked at together: what comes of them still fits a processor's cache."""
 
 _WORD = 8
@@ -30,6 +30,10 @@ _HIGH = np.uint64(0xF0F0F0F0F0F0F0F0)
 _PAIRS = np.uint64(0x000000FF000000FF)
 _HUNDREDS = np.uint64(0x000F424000000064)
 _UNITS = np.uint64(0x0000271000000001)
+_ONES = np.uint64(0x0101010101010101)
+_TOPS = np.uint64(0x8080808080808080)
+_POINTS = _ONES * np.uint64(_POINT)
+_ONE, _SEVEN, _EIGHT, _TEN, _SIXTEEN, _THIRTY_TWO = map(np.uint64, (1, 7, 8, 10, 16, 32))
 # The last n characters of a word, for n of 0 to 8.
 _LAST = np.array([0, *(~((1 << (64 - 8 * n)) - 1) & (2**64 - 1) for n in range(1, 9))], np.uint64)
 _FILL = ~_LAST & _ZEROS
@@ -55,7 +59,8 @@ class Tokens:
         """How many words stand on each line of the block."""
         newlines = np.flatnonzero(self.data == _NEWLINE)
         before = np.searchsorted(self.starts, np.append(newlines, len(self.data)))
-        return np.diff(before, prepend=0)
+        before[1:] -= before[:-1].copy()
+        return before
 
     def text(self, index: int) -> str:
         """One word."""
@@ -135,25 +140,64 @@ def parsed(
     """
     starts, ends = words.starts[chosen], words.ends[chosen]
     negative = words.data[starts] == _MINUS
-    points = _points(words.data, starts, ends)
-    whole = points - starts - negative
+    lengths = ends - starts - negative
+    short = lengths <= _WORD
+    if 2 * np.count_nonzero(short) > len(starts):
+        values, done = _short(words.data, ends, np.where(short, lengths, 0))
+        left = np.flatnonzero(~done)
+    else:
+        values, left = np.empty(len(starts)), np.arange(len(starts))
+    if len(left):
+        first = starts[left] + negative[left]
+        values[left], done = _long(words.data, first, ends[left])
+        left = left[~done]
+    np.negative(values, out=values, where=negative)
+    if not len(left):
+        return values, None
+    values[left], bad = _one_by_one(words.data.tobytes(), starts[left], ends[left])
+    return values, None if bad is None else int(left[bad])
+
+
+def _short(
+    data: NDArray[np.uint8], ends: NDArray[np.intp], lengths: NDArray[np.intp]
+) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """Numbers of at most eight characters with a point, and where they are such numbers."""
+    word = _words_at(data)[ends - _WORD]
+    word &= _LAST[lengths]
+    word |= _FILL[lengths]
+    # The lowest bit that is set stands in the first byte that is a point.
+    found = word ^ _POINTS
+    found = (found - _ONES) & ~found & _TOPS
+    found &= ~found + _ONE
+    before = (found >> _SEVEN) - _ONE
+    after = word & ~((found << _ONE) - _ONE)
+    digits = ((word & before) << _EIGHT) | after | np.uint64(0x30)
+    whole, good = _integers(digits)
+    # A power of two as a float is its exponent: how many bits, hence bytes, are before the point.
+    bits = (found.astype(np.float64).view(np.int64) >> 52) - 1023
+    part = (_WORD * _WORD - 1 - bits) >> 3
+    good &= (found != 0) & (lengths > 1)
+    return whole / _TENS[part * good], good
+
+
+def _long(
+    data: NDArray[np.uint8], starts: NDArray[np.intp], ends: NDArray[np.intp]
+) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """Numbers of at most eight digits on each side of a point, or with none; and where they are."""
+    points = _points(data, starts, ends)
+    whole = points - starts
     part = np.maximum(ends - points - 1, 0)
     fits = (whole <= _WORD) & (part <= _WORD) & (whole + part > 0)
     if not fits.all():
         whole, part = np.where(fits, whole, 0), np.where(fits, part, 0)
-    upper, upper_good = _digits(words.data, points, whole)
-    lower, lower_good = _digits(words.data, ends, part)
+    upper, upper_good = _digits(data, points, whole)
+    lower, lower_good = _digits(data, ends, part)
     power = _TENS[part]
     values = upper * power
     values += lower
     fits &= upper_good & lower_good & (values < _EXACT)
     values /= power
-    np.negative(values, out=values, where=negative)
-    odd = np.flatnonzero(~fits)
-    if not len(odd):
-        return values, None
-    values[odd], bad = _one_by_one(words.data.tobytes(), starts[odd], ends[odd])
-    return values, None if bad is None else int(odd[bad])
+    return values, fits
 
 
 def _one_by_one(
@@ -202,9 +246,14 @@ def _digits(
     word = _words_at(data)[ends - _WORD]
     word &= _LAST[count]
     word |= _FILL[count]
-    word ^= _ZEROS
+    return _integers(word)
+
+
+def _integers(word: NDArray[np.uint64]) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """What eight digits are, and where all of them are digits."""
+    word = word ^ _ZEROS
     good = ((word + _SIXES) | word) & _HIGH == 0
-    word = word * np.uint64(10) + (word >> np.uint64(8))
+    word = word * _TEN + (word >> _EIGHT)
     high = (word & _PAIRS) * _HUNDREDS
-    low = ((word >> np.uint64(16)) & _PAIRS) * _UNITS
-    return ((high + low) >> np.uint64(32)).astype(np.float64), good
+    low = ((word >> _SIXTEEN) & _PAIRS) * _UNITS
+    return ((high + low) >> _THIRTY_TWO).astype(np.float64), good

@@ -84,11 +84,7 @@ def frame_time(motion: SkeletonMotion) -> str:
     """Seconds a frame, in the digits of the file where they still are the rate's."""
     written = note_numbers(motion, FRAME_TIME)
     kept = len(written) == 1 and written[0] > 0 and 1 / written[0] == motion.rate
-    if kept:
-        return motion.notes[FRAME_TIME].strip()
-    near = 1 / motion.rate
-    around = [near, float(np.nextafter(near, 0)), float(np.nextafter(near, np.inf))]
-    return repr(next((time for time in around if 1 / time == motion.rate), near))
+    return motion.notes[FRAME_TIME].strip() if kept else repr(1 / motion.rate)
 
 
 def one_word(name: str) -> str:

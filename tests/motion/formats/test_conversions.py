@@ -120,7 +120,8 @@ def test_through_a_file_each_joint_stands_where_it_stood(
     assert isinstance(other, SkeletonMotion)
     guessed = motion.skeleton.space.metres_per_unit / other.skeleton.space.metres_per_unit
     agree(motion, other, guessed if suffix == ".bvh" else 1.0)
-    assert other.rate == motion.rate
+    # A time of a frame, in any digits, is not the inverse of every rate: not of 59.94.
+    assert other.rate == pytest.approx(motion.rate, rel=3e-16)
     assert other.start == (0 if suffix in (".bvh", ".bva") else motion.start)
     assert write(other, path) == () or suffix == ".bvh"
     again = read(path).motion
@@ -150,7 +151,7 @@ def test_orders_and_channels_that_fit() -> None:
 def test_a_format_is_told_by_content(tmp_path: Path) -> None:
     """Files of each format under another's name are read as what they are."""
     for each in formats():
-        if each.kind != "skeleton" or each.write is None or each.companion or each.name == "CSV":
+        if each.name not in ("BVH", "ASK", "BVA", "HTR", "GTR"):
             continue
         path = tmp_path / f"a{each.suffixes[0]}"
         write(made(4), path)
