@@ -11,16 +11,21 @@ from numpy.typing import NDArray
 from enpointe.controllers.wholebody.goal import Goal
 from enpointe.controllers.wholebody.instant import Observer
 from enpointe.motion import Motion
+from enpointe.motion.averaging import averaged
 
 __all__ = ["Reference"]
 
 Array = NDArray[np.float64]
+_WHOLE = 0.2
+"""s: rates of the body as a whole are averaged over this window. Where a foot leaves, a corner of a
+millimetre in the poses is several m/s^2 and hundreds of N m, which no floor gives."""
 
 
 class Reference:
     """The motion's own centre of mass, angular momentum and soles at every sample.
 
-    Rates are central differences of the samples.
+    Rates are central differences of the samples; those of the centre of mass and of the angular
+    momentum are averaged.
 
     Args:
         motion: What is to be danced.
@@ -58,9 +63,9 @@ class Reference:
             motion.qvel,
             motion.qacc,
             com_velocity,
-            self._rate(com_velocity),
+            self._whole_rate(com_velocity),
             momentum,
-            self._rate(momentum),
+            self._whole_rate(momentum),
             self.point_velocity,
             self._rate(self.point_velocity),
         )
@@ -73,6 +78,9 @@ class Reference:
 
     def _rate(self, values: Array) -> Array:
         return np.asarray(np.gradient(values, self.time, axis=0), dtype=np.float64)
+
+    def _whole_rate(self, values: Array) -> Array:
+        return averaged(self._rate(values), _WHOLE, 1.0 / float(np.median(np.diff(self.time))))
 
     def at(self, t: float) -> Goal:
         """The goal at `t` seconds; still at both ends."""
