@@ -1,7 +1,7 @@
 """Decimal numbers out of bytes, many at once and rounded as `float` rounds them.
 
 Numbers of motion files are short decimals: a sign, at most eight digits, a point, at most eight
-more. Such a number is two words of eight characters, each of which becomes an integer in a few
+more. Such a number is one or two words of eight characters, which become integers in a few
 multiplications (D. Lemire, "Number parsing at a gigabyte per second", Software: Practice and
 Experience 51(8), 2021, section 3), and their quotient by a power of ten is rounded once, hence
 right (W. D. Clinger, "How to read floating point numbers accurately", PLDI 1990). numpy does that
@@ -16,9 +16,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["BLOCK", "Tokens", "blocks", "parsed", "tokens"]
+__all__ = ["BLOCK", "Spelled", "Tokens", "blocks", "parsed", "tokens"]
 
-BLOCK = 1 << 18
+BLOCK = 1 << 16
 """Bytes looked at together: what comes of them still fits a processor's cache."""
 
 _WORD = 8
@@ -30,6 +30,10 @@ _HIGH = np.uint64(0xF0F0F0F0F0F0F0F0)
 _PAIRS = np.uint64(0x000000FF000000FF)
 _HUNDREDS = np.uint64(0x000F424000000064)
 _UNITS = np.uint64(0x0000271000000001)
+_ONES = np.uint64(0x0101010101010101)
+_TOPS = np.uint64(0x8080808080808080)
+_POINTS = _ONES * np.uint64(_POINT)
+_ONE, _SEVEN, _EIGHT, _TEN, _SIXTEEN, _THIRTY_TWO = map(np.uint64, (1, 7, 8, 10, 16, 32))
 # The last n characters of a word, for n of 0 to 8.
 _LAST = np.array([0, *(~((1 << (64 - 8 * n)) - 1) & (2**64 - 1) for n in range(1, 9))], np.uint64)
 _FILL = ~_LAST & _ZEROS
@@ -59,14 +63,47 @@ class Tokens:
 
     def text(self, index: int) -> str:
         """One word."""
-        return self.data[self.starts[index] : self.ends[index]].tobytes().decode("latin-1")
+        return self.data[self.starts[index] : self.ends[index]].tobytes().decode("ascii", "replace")
 
-    def are(self, indices: NDArray[np.intp], word: bytes) -> bool:
-        """Whether the words at some places are all this one."""
-        starts = self.starts[indices]
-        if not (self.ends[indices] - starts == len(word)).all():
+    def are(self, chosen: NDArray[np.intp], words: Spelled, which: NDArray[np.intp]) -> bool:
+        """Whether each chosen word is spelled like the one of `words` that `which` names."""
+        starts = self.starts[chosen]
+        if not np.array_equal(self.ends[chosen] - starts, words.lengths[which]):
             return False
-        return all((self.data[starts + i] == byte).all() for i, byte in enumerate(word))
+        at_each = _words_at(self.data)
+        for part in range(words.letters.shape[1]):
+            here = np.minimum(starts + _WORD * part, len(at_each) - 1)
+            same = at_each[here] & words.masks[which, part] == words.letters[which, part]
+            if not same.all():
+                return False
+        return True
+
+
+@dataclass(frozen=True)
+class Spelled:
+    """Words as numbers of eight letters each, to be compared many at once.
+
+    Attributes:
+        lengths: (N,), letters of each word.
+        letters: (N, parts), eight of a word's letters each, the rest 0.
+        masks: (N, parts), which of the eight are the word's.
+    """
+
+    lengths: NDArray[np.intp]
+    letters: NDArray[np.uint64]
+    masks: NDArray[np.uint64]
+
+    @classmethod
+    def of(cls, words: list[bytes]) -> Spelled:
+        """Spells words."""
+        parts = 1 + max(map(len, words), default=0) // _WORD
+        padded = [word.ljust(parts * _WORD, b"\0") for word in words]
+        masks = [(b"\xff" * len(word)).ljust(parts * _WORD, b"\0") for word in words]
+        return cls(
+            np.array([len(word) for word in words], np.intp),
+            np.frombuffer(b"".join(padded), "<u8").reshape(-1, parts),
+            np.frombuffer(b"".join(masks), "<u8").reshape(-1, parts),
+        )
 
 
 def blocks(data: bytes, start: int = 0) -> Iterator[bytes]:
@@ -102,29 +139,83 @@ def parsed(
     """
     starts, ends = words.starts[chosen], words.ends[chosen]
     negative = words.data[starts] == _MINUS
-    points = _points(words.data, starts, ends)
-    whole = points - starts - negative
+    lengths = ends - starts - negative
+    short = lengths <= _WORD
+    if 2 * np.count_nonzero(short) > len(starts):
+        values, done = _short(words.data, ends, np.where(short, lengths, 0))
+        left = np.flatnonzero(~done)
+    else:
+        values, left = np.empty(len(starts)), np.arange(len(starts))
+    if len(left):
+        first = starts[left] + negative[left]
+        values[left], done = _long(words.data, first, ends[left])
+        left = left[~done]
+    np.negative(values, out=values, where=negative)
+    if not len(left):
+        return values, None
+    values[left], bad = _one_by_one(words.data.tobytes(), starts[left], ends[left])
+    return values, None if bad is None else int(left[bad])
+
+
+def _short(
+    data: NDArray[np.uint8], ends: NDArray[np.intp], lengths: NDArray[np.intp]
+) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """Numbers of at most eight characters with a point, and where they are such numbers."""
+    word = _words_at(data)[ends - _WORD]
+    word &= _LAST[lengths]
+    word |= _FILL[lengths]
+    # The lowest bit that is set stands in the first byte that is a point.
+    found = word ^ _POINTS
+    found = (found - _ONES) & ~found & _TOPS
+    found &= ~found + _ONE
+    before = (found >> _SEVEN) - _ONE
+    after = word & ~((found << _ONE) - _ONE)
+    digits = ((word & before) << _EIGHT) | after | np.uint64(0x30)
+    whole, good = _integers(digits)
+    # A power of two as a float is its exponent: how many bits, hence bytes, are before the point.
+    bits = (found.astype(np.float64).view(np.int64) >> 52) - 1023
+    part = (_WORD * _WORD - 1 - bits) >> 3
+    good &= (found != 0) & (lengths > 1)
+    return whole / _TENS[part * good], good
+
+
+def _long(
+    data: NDArray[np.uint8], starts: NDArray[np.intp], ends: NDArray[np.intp]
+) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """Numbers of at most eight digits on each side of a point, or with none; and where they are."""
+    points = _points(data, starts, ends)
+    whole = points - starts
     part = np.maximum(ends - points - 1, 0)
     fits = (whole <= _WORD) & (part <= _WORD) & (whole + part > 0)
     if not fits.all():
         whole, part = np.where(fits, whole, 0), np.where(fits, part, 0)
-    upper, upper_good = _digits(words.data, points, whole)
-    lower, lower_good = _digits(words.data, ends, part)
+    upper, upper_good = _digits(data, points, whole)
+    lower, lower_good = _digits(data, ends, part)
     power = _TENS[part]
     values = upper * power
     values += lower
     fits &= upper_good & lower_good & (values < _EXACT)
     values /= power
-    np.negative(values, out=values, where=negative)
-    for index in np.flatnonzero(~fits):
-        word = words.data[starts[index] : ends[index]].tobytes()
-        try:
-            values[index] = float(word) if b"_" not in word else np.nan
-        except ValueError:
-            values[index] = np.nan
-        if not np.isfinite(values[index]):
-            return values, int(index)
-    return values, None
+    return values, fits
+
+
+def _one_by_one(
+    data: bytes, starts: NDArray[np.intp], ends: NDArray[np.intp]
+) -> tuple[NDArray[np.float64], int | None]:
+    """Words through `float`, and the place of the first that is no finite number."""
+    words = [data[start:end] for start, end in zip(starts.tolist(), ends.tolist(), strict=True)]
+    values = np.full(len(words), np.nan)
+    try:
+        values[:] = list(map(float, words))
+    except ValueError:
+        for index, word in enumerate(words):
+            try:
+                values[index] = float(word)
+            except ValueError:
+                break
+    values[[b"_" in word for word in words]] = np.nan
+    bad = np.flatnonzero(~np.isfinite(values))
+    return values, int(bad[0]) if len(bad) else None
 
 
 def _points(
@@ -140,19 +231,28 @@ def _points(
     return np.where((following >= starts) & (following < ends), following, ends)
 
 
+def _words_at(data: NDArray[np.uint8]) -> NDArray[np.uint64]:
+    """The eight bytes from each byte on, as one number, without a copy."""
+    return np.lib.stride_tricks.as_strided(
+        data[:_WORD].view("<u8"), (len(data) - _WORD + 1,), (1,), writeable=False
+    )
+
+
 def _digits(
     data: NDArray[np.uint8], ends: NDArray[np.intp], count: NDArray[np.intp]
 ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     """The integers that the `count` characters before `ends` are, and where they are digits."""
-    at_each = np.lib.stride_tricks.as_strided(
-        data[:_WORD].view("<u8"), (len(data) - _WORD + 1,), (1,), writeable=False
-    )
-    word = at_each[ends - _WORD]
+    word = _words_at(data)[ends - _WORD]
     word &= _LAST[count]
     word |= _FILL[count]
-    word ^= _ZEROS
+    return _integers(word)
+
+
+def _integers(word: NDArray[np.uint64]) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """What eight digits are, and where all of them are digits."""
+    word = word ^ _ZEROS
     good = ((word + _SIXES) | word) & _HIGH == 0
-    word = word * np.uint64(10) + (word >> np.uint64(8))
+    word = word * _TEN + (word >> _EIGHT)
     high = (word & _PAIRS) * _HUNDREDS
-    low = ((word >> np.uint64(16)) & _PAIRS) * _UNITS
-    return ((high + low) >> np.uint64(32)).astype(np.float64), good
+    low = ((word >> _SIXTEEN) & _PAIRS) * _UNITS
+    return ((high + low) >> _THIRTY_TWO).astype(np.float64), good

@@ -5,13 +5,19 @@ from __future__ import annotations
 from pathlib import Path
 
 from enpointe.errors import EnpointeError, FormatError
+from enpointe.motion.formats.amc import AMC
 from enpointe.motion.formats.aoa import AOA
+from enpointe.motion.formats.asf import ASF
+from enpointe.motion.formats.ask import ASK
 from enpointe.motion.formats.bap import BAP
 from enpointe.motion.formats.brd import BRD
+from enpointe.motion.formats.bva import BVA
+from enpointe.motion.formats.bvh import BVH
 from enpointe.motion.formats.c3d import C3D
 from enpointe.motion.formats.content import Content, Format, Payload
 from enpointe.motion.formats.csm import CSM
 from enpointe.motion.formats.csv_table import CSV_JOINTS, CSV_MARKERS
+from enpointe.motion.formats.htr import GTR, HTR
 from enpointe.motion.formats.trc import TRC
 
 __all__ = ["FORMATS", "formats", "read", "sniffed", "write"]
@@ -20,6 +26,13 @@ _HEAD = 4096
 
 # One line a format; where a file could be two, the earlier is taken.
 FORMATS: tuple[Format, ...] = (
+    BVH,
+    ASK,
+    AMC,
+    ASF,
+    BVA,
+    HTR,
+    GTR,
     C3D,
     TRC,
     CSM,

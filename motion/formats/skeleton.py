@@ -218,9 +218,7 @@ class SkeletonMotion:
             return np.tile(joint.rest, (self.frames, 1))
         angles = values[:, turning] * self.skeleton.space.radians_per_unit
         columns = [joint.turning.index(axis) for axis in joint.product]
-        turned = Rotation.from_euler(
-            joint.product, angles[:, columns] if len(columns) > 1 else angles[:, 0]
-        )
+        turned = Rotation.from_euler(joint.product, angles[:, columns])
         rest = Rotation.from_quat(joint.rest, scalar_first=True)
         frame = Rotation.from_quat(joint.axis, scalar_first=True)
         whole: Array = (rest * frame * turned * frame.inv()).as_quat(scalar_first=True)

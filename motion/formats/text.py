@@ -8,14 +8,29 @@ import numpy as np
 from numpy.typing import NDArray
 
 from enpointe.errors import FormatError
+from enpointe.motion.formats.numbers import blocks, parsed, tokens
 
-__all__ = ["finite_number", "number_table", "read_text", "whole_number"]
+__all__ = [
+    "CUT",
+    "decoded",
+    "finite_number",
+    "number_block",
+    "number_table",
+    "read_raw",
+    "read_text",
+    "refuse_merge_marks",
+    "whole_number",
+]
+
+CUT = "the file ends within a line: its last number may be cut short"
+"""The warning about text without a line end, in which nothing else shows a cut."""
 
 _LARGEST_COUNT = 10**9
+_MERGE_MARKS = ("<<<<<<<", "=======", ">>>>>>>")
 
 
-def read_text(path: Path) -> str:
-    r"""A file's text, line ends as \n, a byte order mark left out; Latin-1 where it is no UTF-8.
+def read_raw(path: Path) -> bytes:
+    """A text file's bytes as they are.
 
     Raises:
         FormatError: No such file, empty, or binary.
@@ -24,16 +39,32 @@ def read_text(path: Path) -> str:
         raw = path.read_bytes()
     except OSError as error:
         raise FormatError(f"can't be read ({error.strerror or error})", path) from None
+    except ValueError:
+        raise FormatError("can't be read (no file can have that name)", path) from None
     if not raw.strip():
         raise FormatError("the file is empty", path, line=1)
     nul = raw.find(b"\0")
     if nul >= 0:
         raise FormatError("a binary file where text was expected", path, byte=nul)
+    return raw
+
+
+def decoded(raw: bytes) -> str:
+    r"""Text, line ends as \n, a byte order mark left out; Latin-1 where it is no UTF-8."""
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError:
         text = raw.decode("latin-1")
     return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def read_text(path: Path) -> str:
+    r"""A file's text, line ends as \n, a byte order mark left out; Latin-1 where it is no UTF-8.
+
+    Raises:
+        FormatError: No such file, empty, or binary.
+    """
+    return decoded(read_raw(path))
 
 
 def finite_number(token: str, path: Path, line: int, what: str) -> float:
@@ -43,7 +74,7 @@ def finite_number(token: str, path: Path, line: int, what: str) -> float:
         FormatError: No number, or not a finite one.
     """
     try:
-        value = float(token)
+        value = float(token.replace("_", "?"))
     except ValueError:
         raise FormatError(f"{what} must be a number, got {token[:40]!r}", path, line=line) from None
     if not np.isfinite(value):
@@ -84,26 +115,72 @@ def number_table(
         FormatError: A row with more or fewer, or with something that is no finite number; with
             its line.
     """
-    try:
-        table = np.fromstring(" ".join(rows), sep=" ")
-        counted = [len(row.split()) for row in rows]
-    except (ValueError, DeprecationWarning):
-        table, counted = np.empty(0), []
-    whole = bool(counted) and all(n in (0, width) for n in counted)
-    if whole and table.size == sum(counted) and np.isfinite(table).all():
-        return table.reshape(-1, width)
-    return _slow_table(rows, width, path, first_line, what)
+    return number_block("\n".join(rows).encode(), width, path, first_line, what)
 
 
-def _slow_table(
-    rows: list[str], width: int, path: Path, first_line: int, what: str
+def number_block(
+    data: bytes,
+    width: int,
+    path: Path,
+    first_line: int,
+    what: str,
+    start: int = 0,
+    *,
+    broken: bool = False,
 ) -> NDArray[np.float64]:
-    kept = []
-    for line, row in enumerate(rows, start=first_line):
-        tokens = row.split()
-        if not tokens:
-            continue
-        if len(tokens) != width:
-            raise FormatError(f"{what} needs {width} numbers, got {len(tokens)}", path, line=line)
-        kept.append([finite_number(token, path, line, what) for token in tokens])
-    return np.array(kept, dtype=float).reshape(-1, width)
+    r"""The numbers that fill the rest of a file, `width` on each line.
+
+    Args:
+        data: The bytes; lines end with \n, lines of blanks are passed over.
+        width: Numbers on a line.
+        path: The file, for messages.
+        first_line: Number of the line in the file that starts at `start`.
+        what: What a line is, for messages.
+        start: Where in `data` they start.
+        broken: Whether a line may also hold fewer, so that a row goes over several lines.
+
+    Returns:
+        (rows, width).
+
+    Raises:
+        FormatError: A line with more or fewer, or with something that is no finite number; with
+            the line.
+    """
+    found = []
+    line = first_line
+    for block in blocks(data, start):
+        words = tokens(block)
+        counts = words.per_line()
+        wrong = np.flatnonzero(counts > width if broken else (counts != width) & (counts != 0))
+        values, bad = parsed(words)
+        if bad is not None and (not len(wrong) or bad < counts[: wrong[0]].sum()):
+            row = int(np.searchsorted(np.cumsum(counts), bad, side="right"))
+            at = line + row
+            refuse_merge_marks(words.text(int(counts[:row].sum())), path, at)
+            finite_number(words.text(bad), path, at, f"each value of {what}")
+        if len(wrong):
+            place = int(counts[: wrong[0]].sum())
+            refuse_merge_marks(words.text(place), path, line + int(wrong[0]))
+            raise FormatError(
+                f"{what} needs {width} numbers, got {counts[wrong[0]]}",
+                path,
+                line=line + int(wrong[0]),
+            )
+        found.append(values)
+        line += len(counts) - 1
+    values = np.concatenate(found or [np.empty(0)])
+    if values.size % width:
+        raise FormatError(f"the last {what[2:]} is not whole", path, line=line)
+    return values.reshape(-1, width)
+
+
+def refuse_merge_marks(word: str, path: Path, line: int) -> None:
+    """Says so where version control left two versions in a file.
+
+    Raises:
+        FormatError: The first word of the line is such a mark.
+    """
+    if word.startswith(_MERGE_MARKS):
+        raise FormatError(
+            f"a merge left its mark {word[:7]!r}; choose one of the two versions", path, line=line
+        )
