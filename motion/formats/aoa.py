@@ -58,7 +58,7 @@ def read_aoa(path: Path) -> Content:
     if rest:
         lost.append(f"{rest} markers of a frame that breaks off")
     positions = points[: whole * markers].reshape(whole, markers, 3)
-    warnings += gap_warnings([], 0, None, positions)
+    warnings += gap_warnings(positions)
     positions[~np.isfinite(positions).all(axis=2)] = np.nan
     space, guesses = guessed_space(positions, "y", None, usual_metres=0.01)
     names = tuple(str(index) for index in range(1, markers + 1))
