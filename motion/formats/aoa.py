@@ -8,11 +8,9 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-import numpy as np
-
 from enpointe.errors import FormatError
 from enpointe.files import write_text
-from enpointe.motion.formats.columns import column_table, gap_warnings, number_text
+from enpointe.motion.formats.columns import column_table, number_text, settle_gaps
 from enpointe.motion.formats.content import Content, Format, Payload
 from enpointe.motion.formats.guessing import guessed_space
 from enpointe.motion.formats.holding import left_out, lost_notes, markers_of
@@ -58,8 +56,7 @@ def read_aoa(path: Path) -> Content:
     if rest:
         lost.append(f"{rest} markers of a frame that breaks off")
     positions = points[: whole * markers].reshape(whole, markers, 3)
-    warnings += gap_warnings(positions)
-    positions[~np.isfinite(positions).all(axis=2)] = np.nan
+    warnings += settle_gaps(positions)
     space, guesses = guessed_space(positions, "y", None, usual_metres=0.01)
     names = tuple(str(index) for index in range(1, markers + 1))
     notes = {_COMMENT: comment} if comment else {}

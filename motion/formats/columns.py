@@ -18,9 +18,9 @@ __all__ = [
     "MOST_MARKERS",
     "column_table",
     "delimited_rows",
-    "gap_warnings",
     "number_text",
     "plain_lines",
+    "settle_gaps",
 ]
 
 Array = NDArray[np.float64]
@@ -120,20 +120,24 @@ def plain_lines(raw: bytes) -> bytes:
     return raw.replace(b"\r\n", b"\n").replace(b"\r", b"\n") if b"\r" in raw else raw
 
 
-def gap_warnings(points: Array, shorter: int = 0) -> list[str]:
-    """What is doubtful about gaps: rows that end early, and points that lack a coordinate.
+def settle_gaps(points: Array, shorter: int = 0) -> list[str]:
+    """Makes points that lack a coordinate unseen, and says what is doubtful about gaps.
 
     Args:
-        points: (T, M, 3), as read.
+        points: (T, M, 3), as read; changed in place.
         shorter: Rows that end early.
     """
     found = []
     if shorter:
         found.append(f"{shorter} rows end early; what they lack is taken as not seen")
-    finite = np.isfinite(points)
-    partly = int((finite.any(axis=2) & ~finite.all(axis=2)).sum())
+    known = np.isfinite(points)
+    if known.all():
+        return found
+    lacking = ~known.all(axis=2)
+    partly = int((known.any(axis=2) & lacking).sum())
     if partly:
         found.append(f"{partly} points lack a coordinate and are taken as not seen")
+    points[lacking] = np.nan
     return found
 
 

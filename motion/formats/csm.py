@@ -17,11 +17,12 @@ from enpointe.files import write_text
 from enpointe.motion.formats.columns import (
     MOST_MARKERS,
     column_table,
-    gap_warnings,
     number_text,
     plain_lines,
+    settle_gaps,
 )
 from enpointe.motion.formats.content import Content, Format, Payload
+from enpointe.motion.formats.fields import even_table
 from enpointe.motion.formats.guessing import guessed_space
 from enpointe.motion.formats.holding import left_out, markers_of, plain_names
 from enpointe.motion.formats.markers import MarkerMotion
@@ -68,8 +69,7 @@ def read_csm(path: Path) -> Content:
     if not table[0, 0].is_integer() or abs(table[0, 0]) > 1e9:
         raise FormatError("a frame's number must be whole", path, line=at + 1)
     positions = table[:, 1:].reshape(len(table), len(names), 3)
-    warnings += gap_warnings(positions)
-    positions[~np.isfinite(positions).all(axis=2)] = np.nan
+    warnings += settle_gaps(positions)
     space, guesses = guessed_space(positions, "z", None)
     kept = {key: _said(said) for key, (_, said) in sections.items() if key not in _TOLD}
     notes = {key: value for key, value in kept.items() if value}
@@ -150,6 +150,9 @@ def _table(raw: bytes, skipped: int, width: int, path: Path) -> NDArray[np.float
     start = 0
     for _ in range(skipped):
         start = raw.find(b"\n", start) + 1 or len(raw)
+    table = even_table(raw, start, width, None)
+    if table is not None and np.isfinite(table).all():
+        return table
     if not _GAP.search(raw, start):
         return number_block(raw, width, path, skipped + 1, "a frame", start)
     rows = decoded(_DROPOUT.sub(b" nan nan nan ", raw[start:])).split("\n")

@@ -23,9 +23,9 @@ from enpointe.files import write_text
 from enpointe.motion.formats.columns import (
     MOST_MARKERS,
     delimited_rows,
-    gap_warnings,
     number_text,
     plain_lines,
+    settle_gaps,
 )
 from enpointe.motion.formats.content import Content, Format, Payload
 from enpointe.motion.formats.guessing import UNITS, guessed_space, unit_name
@@ -254,8 +254,7 @@ def _markers(
                 residuals[:, index] = values
             elif channel == "cameras" and cameras is not None:
                 cameras[:, index] = np.clip(np.nan_to_num(values), 0, 255).astype(np.uint8)
-    warnings += gap_warnings(positions, shorter)
-    positions[~np.isfinite(positions).all(axis=2)] = np.nan
+    warnings += settle_gaps(positions, shorter)
     strange = sorted({c.channel for c in columns} - {*_POINT, *_TURN, "residual", "cameras"})
     motion = MarkerMotion(
         tuple(name for name, _ in markers),

@@ -6,6 +6,8 @@ so that the words are parsed together and gaps cost nothing.
 
 from __future__ import annotations
 
+import io
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,10 +15,11 @@ from numpy.typing import NDArray
 
 from enpointe.motion.formats.numbers import Tokens, blocks, parsed, tokens
 
-__all__ = ["Fields", "fields_table"]
+__all__ = ["Fields", "even_table", "fields_table"]
 
 Array = NDArray[np.float64]
 _NEWLINE = 10
+_ZERO = 48
 _LOWER = 32
 
 
@@ -45,6 +48,9 @@ def fields_table(data: bytes, start: int, width: int, delimiter: str, needed: in
         delimiter: Between columns, one character.
         needed: Columns at the start that every row has to have.
     """
+    even = even_table(data, start, width, delimiter)
+    if even is not None:
+        return None if np.isnan(even[:, :needed]).any() else Fields(even, 0, 0)
     parts = []
     for block in blocks(data, start):
         part = _block(tokens(block), width, ord(delimiter), needed)
@@ -60,17 +66,57 @@ def fields_table(data: bytes, start: int, width: int, delimiter: str, needed: in
     )
 
 
+def even_table(data: bytes, start: int, width: int, delimiter: str | None) -> Array | None:
+    r"""The rest of a file whose lines all have every column, or None where it is no such file.
+
+    Args:
+        data: The file, lines ending with \n.
+        start: Where the table starts.
+        width: Columns.
+        delimiter: Between columns, with nothing between two of them for a gap; None for any
+            blanks, which leave no gaps.
+
+    Returns:
+        (rows, width), NaN for gaps.
+    """
+    file = io.BytesIO(data)
+    file.seek(start)
+    table = _loaded(file, width, delimiter)
+    if table is None and delimiter is not None:
+        table = _filled(data[start:], width, delimiter)
+    return None if table is None or np.isinf(table).any() else table
+
+
+def _filled(body: bytes, width: int, delimiter: str) -> Array | None:
+    """Lines with nothing between some separators, read with zeros there."""
+    codes = np.frombuffer(body.rstrip(b"\n") + b"\n", np.uint8)
+    ends = np.flatnonzero((codes == _NEWLINE) | (codes == ord(delimiter)))
+    gaps = np.diff(ends, prepend=-1) == 1
+    filled = np.insert(codes, ends[gaps], _ZERO)
+    table = _loaded(io.BytesIO(filled.tobytes()), width, delimiter)
+    if table is None or table.size != len(gaps):
+        return None
+    table.ravel()[gaps] = np.nan
+    return table
+
+
+def _loaded(file: io.BytesIO, width: int, delimiter: str | None) -> Array | None:
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            table: Array = np.loadtxt(
+                file, delimiter=delimiter, comments=None, ndmin=2, encoding="latin-1"
+            )
+    except (ValueError, OverflowError, UserWarning):
+        return None
+    return table if table.shape[1] == width else None
+
+
 def _block(words: Tokens, width: int, delimiter: int, needed: int) -> Fields | None:
     marks = words.data == delimiter
     if delimiter > _LOWER:
         words = _parted(words, marks)
     counts = words.per_line()
-    rows = int(np.count_nonzero(counts))
-    whole = ((counts == width) | (counts == 0)).all()
-    if whole and np.count_nonzero(marks) == rows * (width - 1):
-        values, bad = parsed(words)
-        if bad is None:
-            return Fields(values.reshape(rows, width), 0, 0)
     return _with_gaps(words, marks, counts, width, needed)
 
 

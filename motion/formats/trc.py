@@ -19,9 +19,9 @@ from enpointe.files import write_text
 from enpointe.motion.formats.columns import (
     MOST_MARKERS,
     delimited_rows,
-    gap_warnings,
     number_text,
     plain_lines,
+    settle_gaps,
 )
 from enpointe.motion.formats.content import Content, Format, Payload
 from enpointe.motion.formats.guessing import UNITS, guessed_space, unit_name
@@ -70,8 +70,7 @@ def read_trc(path: Path) -> Content:
         raise FormatError("there are no frames after the header", path, line=head.first_row)
     warnings += _doubts(table, head)
     positions = table[:, 2:].reshape(len(table), len(head.names), 3)
-    warnings += gap_warnings(positions, rows.shorter)
-    positions[~np.isfinite(positions).all(axis=2)] = np.nan
+    warnings += settle_gaps(positions, rows.shorter)
     space, guesses = guessed_space(positions, "y", head.metres)
     start = _start(table[0, 0], path, head.first_row + 1)
     notes = dict(head.notes)
