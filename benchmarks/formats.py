@@ -144,9 +144,8 @@ def main() -> None:
     if options.json:
         print(json.dumps(table, indent=2))
         return
-    print(
-        "| file | reader | s | peak, MB | of these for the file |\n| --- | --- | --- | --- | --- |"
-    )
+    print("| file | reader | s | s of processor | peak, MB | of these for the file |")
+    print("| --- | --- | --- | --- | --- | --- |")
     for file, readers in table.items():
         for reader, found in readers.items():
             print(

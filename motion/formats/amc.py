@@ -33,6 +33,9 @@ RATE = 120.0
 _HEADER = ":amc"
 _DEGREES, _RADIANS = ":degrees", ":radians"
 _LARGEST_FRAME = 10**9
+_LONGEST_NAME = 64
+# Bones without a line take room in every frame; a file of nothing else would fill the memory.
+_SPARSEST = 8
 
 
 @dataclass(frozen=True)
@@ -97,7 +100,7 @@ def read_amc(path: Path, skeleton: Path, rate: float | None = None) -> Content:
     """
     found = read_figure(skeleton)
     raw = read_raw(path)
-    if raw.count(b"\r") != raw.count(b"\r\n"):
+    if b"\r" in raw and raw.count(b"\r") != raw.count(b"\r\n"):
         raw = raw.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     flags, start, line = _header(raw, path)
     warnings = list(found.warnings)
@@ -160,9 +163,13 @@ class _Body:
     def read(self) -> tuple[NDArray[np.float64], int, list[str]]:
         """(T, width) values, the first frame's number, and warnings."""
         warnings: list[str] = []
-        quick = self.quickly()
-        table, first = quick if quick is not None else self.line_by_line(warnings)
         names = self.first_names()
+        if self.skeleton.width > _SPARSEST * max(1, sum(names.values())):
+            raise self.error(
+                "hardly any bone of the skeleton has a line: is it another's?", self.line
+            )
+        quick = self.quickly(names)
+        table, first = quick if quick is not None else self.line_by_line(warnings)
         absent = [name for name in self.places if name not in names]
         if absent and len(table) == 1:
             line = self.line + self.raw.count(b"\n", self.start)
@@ -199,11 +206,11 @@ class _Body:
             start = end + 1
             line += 1
 
-    def quickly(self) -> tuple[NDArray[np.float64], int] | None:
+    def quickly(self, names: dict[str, int]) -> tuple[NDArray[np.float64], int] | None:
         """All frames, where each has the same lines as the first; else None."""
-        names = self.first_names()
         if (
             not names
+            or max(map(len, names)) > _LONGEST_NAME
             or any(name not in self.places for name in names)
             or any(
                 self.places[name].stop - self.places[name].start != count

@@ -56,7 +56,7 @@ def _sniff(head: bytes) -> bool:
 
 def _read(path: Path) -> Content:
     raw = read_raw(path)
-    if raw.count(b"\r") != raw.count(b"\r\n"):
+    if b"\r" in raw and raw.count(b"\r") != raw.count(b"\r\n"):
         raw = raw.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     found = _MOTION.search(raw)
     head = decoded(raw[: found.start() if found else len(raw)])

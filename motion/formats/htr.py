@@ -106,6 +106,8 @@ class _Reader:
             elif line and not starts:
                 refuse_merge_marks(line, self.path, index + 1)
                 raise self.error(f"[Header] expected, got {line[:40]!r}", index + 1)
+        if not starts:
+            raise self.error("[Header] expected, and there is nothing but comments", 1)
         found: dict[str, tuple[int, int]] = {}
         ends = [index for _, index in starts[1:]] + [len(self.lines)]
         for (name, start), end in zip(starts, ends, strict=True):
@@ -116,7 +118,7 @@ class _Reader:
             if key in found:
                 raise self.error(f"[{name[:40]}] for the second time", start + 1)
             found[key] = (start + 1, end)
-        self.whole = bool(starts) and _plain(starts[-1][0]) == "endoffile"
+        self.whole = _plain(starts[-1][0]) == "endoffile"
         return found
 
     def content(self) -> Content:

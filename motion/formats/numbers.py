@@ -59,7 +59,8 @@ class Tokens:
         """How many words stand on each line of the block."""
         newlines = np.flatnonzero(self.data == _NEWLINE)
         before = np.searchsorted(self.starts, np.append(newlines, len(self.data)))
-        return np.diff(before, prepend=0)
+        before[1:] -= before[:-1].copy()
+        return before
 
     def text(self, index: int) -> str:
         """One word."""

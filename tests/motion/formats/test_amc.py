@@ -350,3 +350,15 @@ def test_any_skeleton_becomes_bones(tmp_path: Path) -> None:
         for index, name in enumerate(first.skeleton.names):
             other = names["root" if index == 0 and roots == 1 else name]
             assert np.allclose(theirs[:, other], ours[:, index], atol=1e-9), (seed, name)
+
+
+def test_a_movement_of_hardly_any_bone_is_refused(tmp_path: Path) -> None:
+    """Bones without a line take room in every frame: a big skeleton would fill the memory."""
+    bones = "".join(
+        f"begin\nname b{i}\ndirection 0 1 0\nlength 1\ndof rx ry rz\nend\n" for i in range(40)
+    )
+    asf = ASF.replace(":hierarchy", bones + ":hierarchy").replace(
+        "root trunk", "root trunk " + " ".join(f"b{i}" for i in range(40))
+    )
+    with pytest.raises(FormatError, match="hardly any bone"):
+        content(tmp_path, AMC, asf)

@@ -151,7 +151,7 @@ def test_orders_and_channels_that_fit() -> None:
 def test_a_format_is_told_by_content(tmp_path: Path) -> None:
     """Files of each format under another's name are read as what they are."""
     for each in formats():
-        if each.kind != "skeleton" or each.write is None or each.companion or each.name == "CSV":
+        if each.name not in ("BVH", "ASK", "BVA", "HTR", "GTR"):
             continue
         path = tmp_path / f"a{each.suffixes[0]}"
         write(made(4), path)
