@@ -15,7 +15,7 @@ from enpointe.motion.formats.content import Content, Format, Payload
 from enpointe.motion.formats.guessing import guessed_space
 from enpointe.motion.formats.holding import left_out, lost_notes, markers_of
 from enpointe.motion.formats.markers import MarkerMotion
-from enpointe.motion.formats.text import finite_number, read_text, whole_number
+from enpointe.motion.formats.text import CUT, finite_number, read_text, whole_number
 
 __all__ = ["AOA", "read_aoa", "write_aoa"]
 
@@ -45,12 +45,15 @@ def read_aoa(path: Path) -> Content:
     comment = lines[0].strip()
     points = column_table(lines[2:], 3, path, 3, "a marker")
     last = len(lines)
+    cut = bool(lines[-1].strip())
     del lines
     whole, rest = divmod(len(points), markers)
     if not whole:
         raise FormatError(f"{len(points)} rows are no frame of {markers} markers", path, line=last)
     warnings: list[str] = []
     lost: list[str] = []
+    if cut:
+        warnings.append(CUT)
     if whole != declared or rest:
         warnings.append(f"frames says {declared}, and there are {whole} whole ones")
     if rest:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 
 from enpointe.errors import FormatError
 from enpointe.motion.formats.fields import Fields, fields_table
-from enpointe.motion.formats.text import decoded
+from enpointe.motion.formats.text import CUT, decoded
 
 __all__ = [
     "MISSING",
@@ -93,6 +94,7 @@ def delimited_rows(
     Raises:
         FormatError: With the line.
     """
+    data, warnings = _whole_lines(data, width, delimiter)
     start = 0
     for _ in range(skipped):
         newline = data.find(b"\n", start)
@@ -100,7 +102,7 @@ def delimited_rows(
     if delimiter is not None:
         found = fields_table(data, start, width, delimiter, needed)
         if found is not None:
-            return found
+            return replace(found, warnings=warnings)
     lines = decoded(data[start:]).split("\n")
     longer, shorter = 0, 0
     if delimiter is not None:
@@ -111,7 +113,19 @@ def delimited_rows(
                 longer += bool(parts[-1].strip())
         shorter = sum(line.count(delimiter) < width - 1 for line in lines if line.strip())
     table = column_table(lines, width, path, skipped + 1, what, delimiter=delimiter, needed=needed)
-    return Fields(table, longer, shorter)
+    return Fields(table, longer, shorter, warnings)
+
+
+def _whole_lines(data: bytes, width: int, delimiter: str | None) -> tuple[bytes, tuple[str, ...]]:
+    """The file without a last line that breaks off, and what is doubtful about its end."""
+    if data.endswith(b"\n") or not data.rstrip():
+        return data, ()
+    last = data.rfind(b"\n") + 1
+    line = data[last:].strip(b" ")
+    columns = line.count(delimiter.encode()) + 1 if delimiter else len(line.split())
+    if not line or columns >= width:
+        return data, (CUT,) if line else ()
+    return data[:last], ("the last row is cut short and left out",)
 
 
 def plain_lines(raw: bytes) -> bytes:

@@ -27,6 +27,7 @@ from enpointe.motion.formats.guessing import guessed_space
 from enpointe.motion.formats.holding import left_out, markers_of, plain_names
 from enpointe.motion.formats.markers import MarkerMotion
 from enpointe.motion.formats.text import (
+    CUT,
     decoded,
     finite_number,
     number_block,
@@ -65,6 +66,8 @@ def read_csm(path: Path) -> Content:
     if not len(table):
         raise FormatError("no points after $Points", path, line=at)
     rate, warnings = _rate(sections, path)
+    if not raw.endswith(b"\n"):
+        warnings.append(CUT)
     warnings += _doubts(sections, table[:, 0], path)
     if not table[0, 0].is_integer() or abs(table[0, 0]) > 1e9:
         raise FormatError("a frame's number must be whole", path, line=at + 1)

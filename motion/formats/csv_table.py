@@ -66,6 +66,7 @@ def read_csv(path: Path) -> Content:
     if not len(table):
         raise FormatError("there are no rows", path, line=at + 1)
     rate, warnings = _rate(table[:, 0], told, path)
+    warnings += rows.warnings
     try:
         if any(column.channel in CHANNELS for column in columns):
             return _joints(columns, table, rate, told, warnings, path, at + 1)

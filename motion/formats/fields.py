@@ -31,11 +31,13 @@ class Fields:
         table: (rows, width), NaN for gaps.
         longer: Rows with words beyond the width, which are left out.
         shorter: Rows that end before the width.
+        warnings: What is doubtful about the end of the file.
     """
 
     table: Array
     longer: int
     shorter: int
+    warnings: tuple[str, ...] = ()
 
 
 def fields_table(data: bytes, start: int, width: int, delimiter: str, needed: int) -> Fields | None:

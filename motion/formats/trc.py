@@ -70,7 +70,7 @@ def read_trc(path: Path) -> Content:
         raise FormatError("there are no frames after the header", path, line=head.first_row)
     warnings += _doubts(table, head)
     positions = table[:, 2:].reshape(len(table), len(head.names), 3)
-    warnings += settle_gaps(positions, rows.shorter)
+    warnings += [*rows.warnings, *settle_gaps(positions, rows.shorter)]
     space, guesses = guessed_space(positions, "y", head.metres)
     start = _start(table[0, 0], path, head.first_row + 1)
     notes = dict(head.notes)
