@@ -164,7 +164,7 @@ def warm(reader: str, suffix: str) -> None:
 
     with TemporaryDirectory() as folder:
         small = Path(folder) / f"small{suffix}"
-        write(moved(3, 2), small)
+        write(moved(40, 2), small)
         READERS[reader](small)
 
 

@@ -85,21 +85,24 @@ def even_table(data: bytes, start: int, width: int, delimiter: str | None) -> Ar
     file.seek(start)
     table = _loaded(file, width, delimiter)
     if table is None and delimiter is not None:
-        table = _filled(data[start:], width, delimiter)
+        table = _filled(data, start, width, delimiter)
     return None if table is None or np.isinf(table).any() else table
 
 
-def _filled(body: bytes, width: int, delimiter: str) -> Array | None:
-    """Lines with nothing between some separators, read with zeros there."""
-    codes = np.frombuffer(body.rstrip(b"\n") + b"\n", np.uint8)
-    ends = np.flatnonzero((codes == _NEWLINE) | (codes == ord(delimiter)))
-    gaps = np.diff(ends, prepend=-1) == 1
-    filled = np.insert(codes, ends[gaps], _ZERO)
-    table = _loaded(io.BytesIO(filled.tobytes()), width, delimiter)
-    if table is None or table.size != len(gaps):
-        return None
-    table.ravel()[gaps] = np.nan
-    return table
+def _filled(data: bytes, start: int, width: int, delimiter: str) -> Array | None:
+    """Lines with nothing between some separators, read with zeros there, block by block."""
+    parts = []
+    for block in blocks(data, start):
+        codes = np.frombuffer(block.strip(b"\n") + b"\n", np.uint8)
+        ends = np.flatnonzero((codes == _NEWLINE) | (codes == ord(delimiter)))
+        gaps = np.diff(ends, prepend=-1) == 1
+        filled = np.insert(codes, ends[gaps], _ZERO)
+        part = _loaded(io.BytesIO(filled.tobytes()), width, delimiter)
+        if part is None or part.size != len(gaps):
+            return None
+        part.ravel()[gaps] = np.nan
+        parts.append(part)
+    return np.concatenate(parts) if parts else None
 
 
 def _loaded(file: io.BytesIO, width: int, delimiter: str | None) -> Array | None:
