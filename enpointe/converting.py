@@ -123,8 +123,7 @@ def convert(
             way.at_source_rate(source_rate)
         if names is not None:
             way.rename(names)
-        way.resample(rate)
-        writer = way.fit(writers)
+        writer = way.fit(writers, rate)
         if unit is not None:
             way.measure(unit)
     except MotionError as error:
@@ -176,6 +175,22 @@ class _Way:
         self.movement, warnings = renamed(self.movement, pairs)
         self.warnings += warnings
 
+    def fit(self, writers: tuple[_Writer, ...], rate: float | None) -> _Writer:
+        """Makes the movement what one of the writers holds, at a rate, and names that one."""
+        from enpointe.motion import Motion
+        from enpointe.motion.formats.fitting import fitted, kind_of
+
+        # A skeleton takes even samples; a scene of several rates can only be sampled as markers.
+        first = isinstance(self.movement, Motion)
+        if first:
+            self.resample(rate)
+        self.movement, lost = fitted(self.movement, [writer.kind for writer in writers])
+        self.lose(lost)
+        if not first:
+            self.resample(rate)
+        kind = kind_of(self.movement)
+        return next((writer for writer in writers if writer.kind == kind), writers[0])
+
     def resample(self, rate: float | None) -> None:
         from enpointe.motion import Motion
         from enpointe.motion.formats.of_dancer import even_rate
@@ -188,17 +203,8 @@ class _Way:
         if rate is None:
             return
         if isinstance(self.movement, Scene):
-            raise MotionError("a scene keeps the rates of its units; convert it to markers first")
+            raise MotionError("a scene keeps the rates of its units; markers of it have one")
         self.movement = resampled(self.movement, rate)
-
-    def fit(self, writers: tuple[_Writer, ...]) -> _Writer:
-        """Makes the movement what one of the writers holds, and names that one."""
-        from enpointe.motion.formats.fitting import fitted, kind_of
-
-        self.movement, lost = fitted(self.movement, [writer.kind for writer in writers])
-        self.lose(lost)
-        kind = kind_of(self.movement)
-        return next((writer for writer in writers if writer.kind == kind), writers[0])
 
     def measure(self, unit: str) -> None:
         from enpointe.motion.formats import MarkerMotion, SkeletonMotion

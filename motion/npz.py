@@ -130,9 +130,9 @@ def _opened(path: Path) -> dict[str, NDArray[np.generic]]:
     except FileNotFoundError:
         raise FormatError("there is no such file", path) from None
     except Exception as error:  # numpy and zipfile raise many kinds on damaged files
-        part = f"its {where}: " if where else ""
-        problem = " ".join(str(error).split())
-        raise FormatError(f"not an NPZ file that can be read ({part}{problem})", path) from None
+        what = f"its {where}: {error}" if where else str(error)
+        line = " ".join(what.split())
+        raise FormatError(f"not an NPZ file that can be read ({line})", path) from None
 
 
 def _stated(arrays: Arrays) -> str:

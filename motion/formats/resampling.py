@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 from enpointe.errors import MotionError
 from enpointe.motion.formats.convert import angles_of
 from enpointe.motion.formats.markers import MarkerMotion
-from enpointe.motion.formats.skeleton import IDENTITY, Joint, SkeletonMotion
+from enpointe.motion.formats.skeleton import IDENTITY, SkeletonMotion
 from enpointe.motion.formats.winding import nearest_angles
 from enpointe.motion.motion import Motion
 
@@ -46,7 +46,7 @@ def resampled(movement: Sampled, rate: float) -> Sampled:
         return _motion(movement, rate)
     if rate == movement.rate:
         return movement
-    at = _At.of(movement.frames, rate / movement.rate)
+    at = _At(movement.frames, rate / movement.rate)
     start = round(movement.start * rate / movement.rate)
     if isinstance(movement, SkeletonMotion):
         return replace(movement, rate=rate, values=_joints(movement, at), start=start)
@@ -56,19 +56,16 @@ def resampled(movement: Sampled, rate: float) -> Sampled:
 class _At:
     """Between which frames, and how far from the first to the second, new frames stand."""
 
-    def __init__(self, places: Array, frames: int) -> None:
-        self.before = np.minimum(places.astype(np.intp), frames - 1)
-        self.share = places - self.before
-        # So that frames that stand on old ones are these, whatever comes behind them.
-        self.share[np.abs(self.share) < _SLACK] = 0.0
-        self.after = np.where(self.share > 0, np.minimum(self.before + 1, frames - 1), self.before)
-
-    @classmethod
-    def of(cls, frames: int, ratio: float) -> _At:
+    def __init__(self, frames: int, ratio: float) -> None:
         count = int((frames - 1) * ratio * (1 + _SLACK)) + 1
         if count > _MOST:
             raise MotionError(f"more than {_MOST} frames at that rate")
-        return cls(np.minimum(np.arange(count) / ratio + _SLACK / 2, frames - 1), frames)
+        places = np.arange(count) / ratio
+        # New frames that all but stand on old ones are these, whatever comes behind them.
+        places = np.where(np.abs(places - np.rint(places)) < _SLACK, np.rint(places), places)
+        self.before = np.minimum(places.astype(np.intp), frames - 1)
+        self.share = np.where(self.before < frames - 1, places - self.before, 0.0)
+        self.after = np.minimum(self.before + 1, frames - 1)
 
     def linear(self, values: NDArray[Any]) -> Array:
         share = self.share.reshape(-1, *[1] * (values.ndim - 1))
@@ -92,7 +89,7 @@ class _At:
         first, second = turns[self.before], turns[self.after]
         step = (first.inv() * second).as_rotvec() * self.share[:, None]
         whole: Array = (first * Rotation.from_rotvec(step)).as_quat(scalar_first=True)
-        whole[gaps[self.before] | gaps[self.after]] = np.nan
+        whole[gaps[self.before] | (gaps[self.after] & (self.share > 0))] = np.nan
         return whole
 
 
@@ -102,22 +99,24 @@ def _joints(motion: SkeletonMotion, at: _At) -> Array:
     for index, joint in enumerate(motion.skeleton.joints):
         if not joint.turning:
             continue
-        place = motion.skeleton.columns(index)
-        columns = [joint.channels.index(f"{axis}rotation") + place.start for axis in joint.product]
-        angles = motion.values[:, columns] * unit
-        values[:, columns] = _angles(joint, angles, at) / unit
+        first = motion.skeleton.columns(index).start
+        columns = [joint.channels.index(f"{axis}rotation") + first for axis in joint.product]
+        angles = motion.values[:, columns]
+        between = _arcs(joint.product, angles * unit, at) / unit
+        # Where a new frame stands on an old one its numbers are the file's own.
+        values[:, columns] = np.where(at.share[:, None] > 0, between, angles[at.before])
     return values
 
 
-def _angles(joint: Joint, angles: Array, at: _At) -> Array:
-    if len(joint.product) < 3:
-        return at.linear(np.unwrap(angles, axis=0))
-    turns = Rotation.from_euler(joint.product, angles).as_quat(scalar_first=True)
+def _arcs(order: str, angles: Array, at: _At) -> Array:
+    if len(order) < 3:
+        step = angles[at.after] - angles[at.before]
+        step -= 2 * np.pi * np.round(step / (2 * np.pi))
+        way: Array = angles[at.before] + at.share[:, None] * step
+        return way
+    turns = Rotation.from_euler(order, angles).as_quat(scalar_first=True)
     between = Rotation.from_quat(at.turned(turns), scalar_first=True)
-    found = nearest_angles(angles_of(between, joint.product), angles[at.before])
-    # Where a new frame stands on an old one its numbers are the file's own.
-    found[at.share == 0] = angles[at.before[at.share == 0]]
-    return found
+    return nearest_angles(angles_of(between, order), angles[at.before])
 
 
 def _markers(motion: MarkerMotion, at: _At) -> MarkerMotion:
