@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from dataclasses import asdict
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -14,6 +15,7 @@ import enpointe
 from enpointe.console import Console, rows
 from enpointe.errors import EnpointeError
 from enpointe.options import (
+    ConversionOptions,
     DancerOptions,
     Effort,
     Json,
@@ -250,21 +252,7 @@ def convert(
     ],
     target: Annotated[Path, typer.Argument(metavar="OUT", help="Its ending names the format.")],
     *,
-    to: Annotated[
-        str | None, typer.Option(metavar="FORMAT", help="The format of OUT, whatever its ending.")
-    ] = None,
-    rate: Annotated[
-        float | None, typer.Option(help="Frames a second to write; those of IN if left out.")
-    ] = None,
-    source_rate: Annotated[
-        float | None, typer.Option(help="Frames a second of IN, where its file does not say.")
-    ] = None,
-    unit: Annotated[
-        str | None, typer.Option(help="Of the lengths in OUT: m, cm, mm or in.")
-    ] = None,
-    names: Annotated[
-        Path | None, typer.Option(help="An MNM file with other names for joints or markers.")
-    ] = None,
+    conversion: ConversionOptions,
     dancer: DancerOptions,
     json: Json = False,
     quiet: Quiet = False,
@@ -273,14 +261,7 @@ def convert(
     """Write a motion file in another format, and say what that can't hold."""
     console = Console(json=json, quiet=quiet)
     converted = enpointe.convert(
-        source,
-        target,
-        to=to,
-        rate=rate,
-        source_rate=source_rate,
-        unit=unit,
-        names=names,
-        dancer=dancer.anthropometry(),
+        source, target, dancer=dancer.anthropometry(), **asdict(conversion)
     )
     if json:
         console.print_json(converted.summary())

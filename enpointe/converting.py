@@ -82,6 +82,7 @@ def convert(
     to: str | None = None,
     rate: float | None = None,
     source_rate: float | None = None,
+    skeleton: str | Path | None = None,
     unit: str | None = None,
     names: str | Path | None = None,
     dancer: Anthropometry | None = None,
@@ -100,6 +101,7 @@ def convert(
         rate: Frames per second to write; the source's if None. Places are linear between frames,
             rotations go the shortest way, nothing is filtered.
         source_rate: Frames per second of the source, where its file does not say or is wrong.
+        skeleton: The ASF file of an AMC file, where it does not lie beside it.
         unit: Of the lengths written: m, cm, mm or in; the source's if None.
         names: An MNM file with other names for joints or markers.
         dancer: Whose a motion of ours is; a dancer of 1.68 m and 54 kg if None.
@@ -116,8 +118,9 @@ def convert(
     _refuse_a_score(source)
     writers = _writers(target, to)
     files = _files(target, writers[0])
-    _refuse_to_overwrite(source, files)
-    way = _Way(*_read(source, dancer, flesh=writers[0].name == "gltf"))
+    beside = _beside(source, skeleton)
+    _refuse_to_overwrite([source, *beside], files)
+    way = _Way(*_read(source, beside, dancer, flesh=writers[0].name == "gltf"))
     try:
         if source_rate is not None:
             way.at_source_rate(source_rate)
@@ -268,12 +271,18 @@ def _files(target: Path, writer: _Writer) -> dict[str, Path]:
     return files
 
 
-def _refuse_to_overwrite(source: Path, files: dict[str, Path]) -> None:
+def _beside(source: Path, skeleton: str | Path | None) -> list[Path]:
+    """The second file that a first is read with."""
     from enpointe.motion.formats.amc import companion
 
-    read = [source]
-    if source.suffix.lower() == ".amc" and source.is_file():
-        read.append(companion(source))
+    if source.suffix.lower() != ".amc" or not source.is_file():
+        if skeleton is not None:
+            raise EnpointeError(f"{source}: only an AMC file is read with a skeleton of its own")
+        return []
+    return [companion(source) if skeleton is None else Path(skeleton)]
+
+
+def _refuse_to_overwrite(read: list[Path], files: dict[str, Path]) -> None:
     mine = {os.path.realpath(path) for path in read}
     for path in files.values():
         if os.path.realpath(path) in mine:
@@ -281,14 +290,15 @@ def _refuse_to_overwrite(source: Path, files: dict[str, Path]) -> None:
 
 
 def _read(
-    source: Path, dancer: Anthropometry | None, *, flesh: bool
+    source: Path, beside: list[Path], dancer: Anthropometry | None, *, flesh: bool
 ) -> tuple[Movement, str, tuple[str, ...], tuple[str, ...]]:
-    if is_stored(source):
-        return load_stored(source, dancer, flesh=flesh), "a motion of the dancer", (), ()
+    from enpointe.motion.formats.amc import AMC, read_amc
     from enpointe.motion.formats.registry import sniffed
 
+    if is_stored(source):
+        return load_stored(source, dancer, flesh=flesh), "a motion of the dancer", (), ()
     found = sniffed(source)
-    content = found.read(source)
+    content = read_amc(source, beside[0]) if beside and found is AMC else found.read(source)
     return content.motion, found.name, content.warnings, content.lost
 
 

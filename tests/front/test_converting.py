@@ -222,6 +222,12 @@ def test_a_skeleton_beside_is_not_overwritten_either(
     Path("05.amc").rename("05_01.amc")
     assert "05.asf is what is to be converted" in refused(capfd, "convert", "05_01.amc", "05.amc")
     assert _run(["convert", "05_01.amc", "other/05.amc", "-q"]) == 0
+    Path("other/05.asf").rename("skeleton.asf")
+    assert "05.asf" in refused(capfd, "convert", "other/05.amc", "a.bvh")
+    assert _run(["convert", "other/05.amc", "a.bvh", "--skeleton", "skeleton.asf", "-q"]) == 0
+    assert "only an AMC file" in refused(
+        capfd, "convert", "a.bvh", "b.bvh", "--skeleton", "skeleton.asf"
+    )
 
 
 def test_any_skeleton_format_to_any(home: Path) -> None:
@@ -244,5 +250,5 @@ def test_any_skeleton_format_to_any(home: Path) -> None:
 
 
 def test_python_raises_what_the_command_says(bvh: Path) -> None:
-    with pytest.raises(EnpointeError, match="one line|does not become"):
+    with pytest.raises(EnpointeError, match="does not become the dancer's motion"):
         enpointe.convert(bvh, "a.npz")
