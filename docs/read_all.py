@@ -1,4 +1,4 @@
-"""A table of every motion file in a folder: which format, how many are read, what is refused and why.
+"""A table of every motion file in a folder: its format, how many are read, what is refused and why.
 
 python docs/read_all.py ../shared/data
 python docs/read_all.py ../shared/data --write    # into docs/formats.md
