@@ -79,11 +79,33 @@ class KinematicFigures(TypedDict):
     logistic: FitFigures | None
 
 
+class BeatFigures(TypedDict):
+    """A key pose that was not reached in time, or whose weight no floor can hold."""
+
+    beat: float | None
+    time: float
+    late: float | None
+    outside: float
+
+
+class StanceFigures(TypedDict):
+    """A time at which one foot bears weight."""
+
+    side: str
+    start: float
+    end: float
+    force: float
+
+
 class PhysicalFigures(TypedDict, total=False):
     """What a performance under gravity has besides."""
 
     tempo_danced: float | None
     lateness_max: float | None
+    beats_not_kept: list[BeatFigures]
+    contacts_planned: int
+    contacts_missed: list[StanceFigures]
+    contacts_unplanned: list[StanceFigures]
     fell_at: float | None
     shortfall_max: float | None
     fault: str | None

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from enpointe.errors import EnpointeError
-from enpointe.figures import PerformanceFigures, PhysicalFigures, RuleKeptFigures
+from enpointe.figures import PerformanceFigures, RuleKeptFigures
 from enpointe.notation import Score, load_score
 from enpointe.preparing import Progress, prepare, silent
 
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from enpointe.controllers import Recording
     from enpointe.models import Anthropometry, KeyPose, Style
     from enpointe.motion import Choreography, Effort, Interpolation, Motion, RuleKept
+    from enpointe.motion.weight_plan import WeightPlan
     from enpointe.motion.wrist import LogisticFit
     from enpointe.sim.measures import Measures
 
@@ -52,6 +53,7 @@ class Performance:
             asks of it, N (moments over 1 m); None for a kinematic performance.
         qp_failures: Periods for which the whole-body controller found no solution and fell back;
             None for other controllers.
+        weight: Where the centre of mass was planned to go; None where no plan was needed.
     """
 
     choreography: Choreography
@@ -65,6 +67,7 @@ class Performance:
     shortfall: float | None = None
     rules: tuple[RuleKept, ...] = ()
     qp_failures: int | None = None
+    weight: WeightPlan | None = None
 
     @property
     def score(self) -> Score:
@@ -139,7 +142,9 @@ class Performance:
             "logistic": None if fit is None else {"b": fit.time, "x0": fit.weight, "rms": fit.rms},
         }
         if self.recording is not None and self.measures is not None:
-            physical = _physical_figures(self.recording, self.measures, self.shortfall)
+            from enpointe.physical_figures import physical_figures
+
+            physical = physical_figures(self.recording, self.measures, self.shortfall, self.weight)
             figures = {**figures, **physical}
         if self.qp_failures is not None:
             figures["qp_failures"] = self.qp_failures
@@ -156,33 +161,6 @@ def _rule_figures(kept: RuleKept) -> RuleKeptFigures:
         "at": kept.at,
         "between": list(kept.between),
         "held_fraction": kept.held,
-    }
-
-
-def _physical_figures(
-    recording: Recording, measures: Measures, shortfall: float | None
-) -> PhysicalFigures:
-    from enpointe.motion.arrival import danced_tempo
-
-    kept, lateness = danced_tempo(recording.as_motion(), recording.reference)
-    return {
-        "tempo_danced": kept if isfinite(kept) else None,
-        "lateness_max": lateness if isfinite(lateness) else None,
-        "fell_at": measures.fell_at,
-        "shortfall_max": shortfall,
-        "fault": recording.fault,
-        "steps": len(recording.time),
-        "root_force_max": measures.root_force_max,
-        "other_contact_max": measures.other_contact_max,
-        "tracking_rms_deg": measures.tracking_rms_deg,
-        "support_margin_min": measures.support_margin_min,
-        "slip_max": measures.slip_max,
-        "flights": [
-            {"start": f.start, "end": f.end, "height": f.height, "turn_deg": f.turn_deg}
-            for f in measures.flights
-        ],
-        "torque_limit_fraction_max": measures.torque_limit_fraction_max,
-        "realtime_factor": recording.realtime_factor,
     }
 
 
@@ -265,21 +243,22 @@ def has_qualities(score: Score) -> bool:
 LONGEST_HOLD = 600.0
 
 
-def reference(motion: Motion, controller: str, progress: Progress = silent) -> Motion:
-    """A movement as a controller is asked for it.
+def reference(
+    motion: Motion, controller: str, progress: Progress = silent
+) -> tuple[Motion, WeightPlan | None]:
+    """A movement as a controller is asked for it, and the plan of its weight where one was made.
 
     The whole-body controller gets one that can be danced, with its weight over the feet that stand.
     """
     if controller != "wholebody":
-        return motion
+        return motion, None
     from enpointe.motion.contact_schedule import contact_schedule
     from enpointe.motion.danceable import make_danceable
 
     if not contact_schedule(motion).steps:
-        return motion
-    return make_danceable(
-        motion, progress=lambda done, total: progress("weight", done, total)
-    ).motion
+        return motion, None
+    made = make_danceable(motion, progress=lambda done, total: progress("weight", done, total))
+    return made.motion, made.weight
 
 
 def dance(
@@ -326,7 +305,7 @@ def dance(
     from enpointe.sim.body import SimulatedBody
     from enpointe.sim.measures import measure
 
-    motion = reference(motion, controller, progress)
+    motion, weight = reference(motion, controller, progress)
     planned = FeedForward.along(motion)
     driver = WholeBody(motion) if controller == "wholebody" else PD(motion, feedforward=planned)
     recording = run(
@@ -347,4 +326,5 @@ def dance(
         float(planned.shortfall.max()),
         rules,
         driver.workload.failures if isinstance(driver, WholeBody) else None,
+        weight,
     )

@@ -266,7 +266,7 @@ class _Asked:
         phrased = self.effort is None and has_qualities(self.score)
         ways = ways_of(choreography, quality, kind, phrased=phrased)
         motion = interpolate(choreography, quality, kind, ways=ways)
-        return reference(motion, controller, progress)
+        return reference(motion, controller, progress)[0]
 
 
 def _outcomes(

@@ -9,12 +9,14 @@ from numpy.typing import NDArray
 
 from enpointe.motion.motion import Motion
 
-__all__ = ["arrivals", "danced_tempo"]
+__all__ = ["KEPT", "arrivals", "danced_tempo", "lateness"]
 
 Array = NDArray[np.float64]
 _NEAR = 0.1
 """A pose is reached when this share of the way from the pose before is left: of a short way a body
 under gravity may leave a twentieth undone that it is off its reference anyway."""
+KEPT = 0.04
+"""A beat is kept when its key pose is reached this near its time, s: a 25th of a pulse at 60."""
 
 
 def arrivals(danced: Motion, asked: Motion) -> Array:
@@ -41,16 +43,24 @@ def arrivals(danced: Motion, asked: Motion) -> Array:
     return np.array(moments)
 
 
+def lateness(danced: Motion, asked: Motion) -> Array:
+    """How much later than the reference each key pose but the first is reached, (K - 1,), s.
+
+    Negative where it is reached earlier, NaN where it never is.
+    """
+    return arrivals(danced, asked) - arrivals(asked, asked)
+
+
 def danced_tempo(danced: Motion, asked: Motion) -> tuple[float, float]:
     """The tempo kept, in pulses a minute, and the largest lateness at a key pose, s.
 
     The tempo is the slope of the beats over the moments of arrival, corrected for where in its way
     each arrival is counted (least squares); NaN where a key pose is never reached.
     """
-    lateness = arrivals(danced, asked) - arrivals(asked, asked)
+    late = lateness(danced, asked)
     beats = np.array([event.beat or 0.0 for event in asked.key_events[1:]])
-    times = np.array([event.time for event in asked.key_events[1:]]) + lateness
+    times = np.array([event.time for event in asked.key_events[1:]]) + late
     if len(beats) < 2 or not np.all(np.isfinite(times)):
         return float("nan"), float("nan")
     slope = np.polyfit(times, beats, 1)[0]
-    return float(60.0 * slope), float(np.abs(lateness).max())
+    return float(60.0 * slope), float(np.abs(late).max())

@@ -5,16 +5,25 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import convolve1d
-from scipy.signal.windows import parzen
 
-__all__ = ["averaged", "averaged_qpos"]
+__all__ = ["averaged", "averaged_qpos", "parzen"]
 
 Array = NDArray[np.float64]
 
 
+def parzen(count: int) -> Array:
+    """A Parzen window of `count` samples, symmetric, 1 in the middle (Parzen 1961).
+
+    As `scipy.signal.windows` has it, whose import takes longer than a short dance is solved.
+    """
+    away = np.abs(np.arange(count) - (count - 1) / 2) / (count / 2)
+    inner = 1.0 - 6.0 * away**2 * (1.0 - away)
+    return np.asarray(np.where(away <= 0.5 * (count - 1) / count, inner, 2.0 * (1.0 - away) ** 3))
+
+
 def averaged(values: Array, seconds: float, rate: float) -> Array:
     """Rows (T, n) averaged over a Parzen window of a width in s; the ends are held."""
-    window = parzen(2 * int(seconds * rate / 2) + 1, sym=True)
+    window = parzen(2 * int(seconds * rate / 2) + 1)
     return np.asarray(convolve1d(values, window / window.sum(), axis=0, mode="nearest"))
 
 

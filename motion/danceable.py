@@ -41,7 +41,7 @@ _GROUND = 0.03
 """m: at this height above the floor a sole holds to its place in the world half as much."""
 _SOLE, _WEIGHT, _TRUNK, _PELVIS = 40.0, 10.0, 1.0, 0.6
 """Costs of places (1/m) and directions (1/rad)."""
-_HEIGHTS = (1.5, 3.0)
+_HEIGHTS = (5.0, 10.0)
 """Costs of the height (1/m), round by round: straight legs reach no higher than they are long, so
 that it is asked for gently first, and then planned again from what was reached."""
 _POSTURE, _BEARING_LEG = 0.3, 0.05
@@ -56,6 +56,12 @@ legs throw more weight about than arms do; the feet that it moves are put back."
 _KINKS = (0.06, 0.032)
 """s: what is left of kinks where soles come and go, averaged away over these widths one after the
 other; the feet, which that moves by a millimetre or two, are put back in between."""
+_CLEAR, _APART = 0.003, 0.0003
+"""m: a leg in the air is kept so far from the other, and goes apart by so much a step where it is
+nearer: what is averaged cuts the corner that a foot goes round a shank."""
+_STEADY = 0.2
+"""Cost of leaving the neighbour's correction, 1/rad: a straight leg can turn between hip and ankle
+with nothing else moved, and would do so at a whim from sample to sample."""
 _STRAIGHT = 0.3
 """rad: a standing knee bent this much gives way too; one that is straight stays straight."""
 
@@ -128,8 +134,10 @@ class _Poser:
         self._trunk = mink.FrameTask("torso", "body", position_cost=0.0, orientation_cost=_TRUNK)
         self._pelvis = mink.FrameTask("pelvis", "body", position_cost=0.0, orientation_cost=_PELVIS)
         self._posture = mink.PostureTask(model, cost=np.full(model.nv, _POSTURE))
-        self._tasks = [*self._soles, self._com, self._trunk, self._pelvis, self._posture]
-        self._limits = [mink.ConfigurationLimit(model, gain=1.0)]
+        steady = mink.DampingTask(model, cost=np.full(model.nv, _STEADY))
+        self._tasks = [*self._soles, self._com, self._trunk, self._pelvis, self._posture, steady]
+        self._range = mink.ConfigurationLimit(model, gain=1.0)
+        self._clear = _clear(model)
         self._legs = _legs(model, contacts.soles)
         self._freedom = _freedom(contacts)
         feet = [leg.soles for leg in self._legs]
@@ -161,10 +169,10 @@ class _Poser:
     def _pose(self, i: int, start: Array) -> Array:
         self._ask(i)
         self._configuration.update(start)
+        aloft = not all(self._contacts.bears[i, leg.soles].any() for leg in self._legs)
+        limits = [self._range, self._clear] if aloft else [self._range]
         for _ in range(_STEPS):
-            step = mink.solve_ik(
-                self._configuration, self._tasks, _DT, "daqp", 1e-6, limits=self._limits
-            )
+            step = mink.solve_ik(self._configuration, self._tasks, _DT, "daqp", 1e-6, limits=limits)
             self._configuration.integrate_inplace(step, _DT)
         return np.array(self._configuration.q)
 
@@ -228,6 +236,19 @@ class _Leg:
     dofs: NDArray[np.int64]
     knee: int
     soles: NDArray[np.int64]
+
+
+def _clear(model: mujoco.MjModel) -> mink.Limit:
+    """Legs that do not go through each other."""
+    left, right = ([f"{side}_{part}_limb" for part in ("thigh", "shank", "foot")] for side in Side)
+    return mink.CollisionAvoidanceLimit(
+        model,
+        [(left, right)],
+        gain=1.0,
+        minimum_distance_from_collisions=_CLEAR,
+        collision_detection_distance=0.02,
+        bound_relaxation=-_APART,
+    )
 
 
 def _legs(model: mujoco.MjModel, soles: NDArray[np.int64]) -> tuple[_Leg, ...]:

@@ -85,14 +85,12 @@ class WeightPlan:
         if t >= self.time[-1] or t <= self.time[0]:
             end = -1 if t >= self.time[-1] else 0
             return self.com[end], np.zeros(3), np.zeros(3)
-        i = int((t - self.time[0]) * PLAN_RATE)
-        i = min(i, len(self.time) - 2)
-        w = (t - self.time[i]) * PLAN_RATE
-        com, velocity, acceleration = (
-            (1 - w) * rows[i] + w * rows[i + 1]
-            for rows in (self.com, self.velocity, self.acceleration)
-        )
-        return com, velocity, acceleration
+        i = min(int((t - self.time[0]) * PLAN_RATE), len(self.time) - 2)
+        dt = t - self.time[i]
+        c, v, a = self.com[i], self.velocity[i], self.acceleration[i]
+        jerk = (self.acceleration[i + 1] - a) * PLAN_RATE
+        com = c + dt * v + dt**2 / 2 * a + dt**3 / 6 * jerk
+        return com, v + dt * a + dt**2 / 2 * jerk, a + dt * jerk
 
 
 def plan_weight(motion: Motion, contacts: ContactSchedule, posed: Motion) -> WeightPlan:

@@ -24,6 +24,12 @@ CONTROL_PERIOD = 0.002
 EARTH = -9.81
 FALLEN = 0.6
 """A dancer whose centre of mass is below this share of its first height has fallen."""
+_COMMANDED = ("position", "velocity", "torque", "stiffness", "damping")
+_WARNINGS = mujoco.mjtWarning
+_DIVERGED = [
+    int(warning)
+    for warning in (_WARNINGS.mjWARN_BADQPOS, _WARNINGS.mjWARN_BADQVEL, _WARNINGS.mjWARN_BADQACC)
+]
 
 
 class SimulatedBody:
@@ -108,7 +114,8 @@ class SimulatedBody:
         self._steps += self._substeps
         for _ in range(self._substeps):
             mujoco.mj_step(model, data)
-            np.maximum(self._root_force, np.abs(_help(data)), out=self._root_force)
+            if _is_helped(data):
+                np.maximum(self._root_force, _help(data), out=self._root_force)
         self._contacts.read(data)
         self._judge()
 
@@ -121,17 +128,15 @@ class SimulatedBody:
         }
 
     def _check(self, command: Command) -> None:
-        for name in ("position", "velocity", "torque", "stiffness", "damping"):
-            _checked(f"command {name}", getattr(command, name), self.model.nu)
+        values = [getattr(command, name) for name in _COMMANDED]
+        whole = all(np.shape(value) == (self.model.nu,) for value in values)
+        if not whole or not np.isfinite(np.concatenate(values)).all():
+            for name, value in zip(_COMMANDED, values, strict=True):
+                _checked(f"command {name}", value, self.model.nu)
 
     def _judge(self) -> None:
         # MuJoCo resets a diverged simulation to its first state and leaves a warning behind.
-        bad = (
-            mujoco.mjtWarning.mjWARN_BADQPOS,
-            mujoco.mjtWarning.mjWARN_BADQVEL,
-            mujoco.mjtWarning.mjWARN_BADQACC,
-        )
-        if any(self.data.warning[w].number for w in bad):
+        if self.data.warning.number[_DIVERGED].any():
             self.fault = "the simulation diverged"
         elif self._contacts.lies or self.data.subtree_com[0, 2] < FALLEN * self._first_com_height:
             self.fault = "fell"
@@ -144,6 +149,16 @@ def _checked(name: str, value: NDArray[np.float64], length: int) -> NDArray[np.f
     if not np.all(np.isfinite(array)):
         raise BodyError(f"{name} has values that are not numbers")
     return array
+
+
+def _is_helped(data: mujoco.MjData) -> bool:
+    """Whether `_help` is anything but zero: hardly ever, and far quicker to see than to add up."""
+    return bool(
+        np.count_nonzero(data.qfrc_applied[:6])
+        or np.count_nonzero(data.qfrc_actuator[:6])
+        or np.count_nonzero(data.qfrc_passive[:6])
+        or np.count_nonzero(data.xfrc_applied)
+    )
 
 
 def _help(data: mujoco.MjData) -> NDArray[np.float64]:

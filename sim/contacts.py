@@ -27,6 +27,7 @@ class ContactReader:
     def __init__(self, model: mujoco.MjModel) -> None:
         self._model = model
         self.soles = Plant(model).sole_geoms
+        self._radius = np.array(model.geom_size[self.soles, 0])
         self._row = {int(geom): i for i, geom in enumerate(self.soles)}
         self._floors = set(np.flatnonzero(model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE).tolist())
         self._force = np.zeros((len(self.soles), 3))
@@ -35,32 +36,50 @@ class ContactReader:
         self._others = 0
         self._other_force = 0.0
         self.lies = False
+        self._sort([])
 
     def read(self, data: mujoco.MjData) -> None:
         """Take the contacts of `data`, right after a step."""
         self._force[:] = 0.0
         self._depth[:] = 0.0
         self._point[:] = data.geom_xpos[self.soles]
-        self._point[:, 2] -= self._model.geom_size[self.soles, 0]
+        self._point[:, 2] -= self._radius
         self._others, self._other_force = 0, 0.0
         self.lies = False
-        wrench = np.zeros(6)
         # The contacts' fields as whole arrays: one by one they cost more than the physics.
         contacts = data.contact
-        pairs, frames = contacts.geom.tolist(), contacts.frame.reshape(-1, 3, 3)
-        for i, (first, second) in enumerate(pairs):
+        wrenches = np.zeros((data.ncon, 6))
+        for i, wrench in enumerate(wrenches):
             mujoco.mj_contactForce(self._model, data, i, wrench)
-            row = self._sole_row(first, second)
-            if row is None:
-                self._others += int(wrench[0] > 0.0)
-                floored = first in self._floors or second in self._floors
-                self.lies = self.lies or (floored and wrench[0] > 0.0)
-                self._other_force = max(self._other_force, float(np.linalg.norm(wrench[:3])))
-                continue
-            # The contact frame's first axis points from the first geom to the second.
-            sign = 1.0 if first in self._floors else -1.0
-            self._force[row] += sign * frames[i].T @ wrench[:3]
-            self._depth[row] = max(-float(contacts.dist[i]), 0.0)
+        # The axes of a contact's frame are its rows; the first points from first to second geom.
+        forces = (wrenches[:, None, :3] @ contacts.frame.reshape(-1, 3, 3))[:, 0]
+        pairs = contacts.geom.tolist()
+        if pairs != self._pairs:
+            self._sort(pairs)
+        for i in self._elsewhere:
+            first, second = pairs[i]
+            self._meet(first, second, wrenches[i])
+        if len(self._bearing):
+            np.add.at(self._force, self._rows, self._signs * forces[self._bearing])
+            self._depth[self._rows] = np.maximum(-contacts.dist[self._bearing], 0.0)
+
+    def _sort(self, pairs: list[list[int]]) -> None:
+        """Tell soles on the floor from the rest; from step to step the pairs hardly change."""
+        rows = [self._sole_row(first, second) for first, second in pairs]
+        bearing = [i for i, row in enumerate(rows) if row is not None]
+        signs = [1.0 if pairs[i][0] in self._floors else -1.0 for i in bearing]
+        self._pairs = pairs
+        self._elsewhere = [i for i, row in enumerate(rows) if row is None]
+        self._bearing = np.array(bearing, dtype=np.int64)
+        self._rows = np.array([row for row in rows if row is not None], dtype=np.int64)
+        self._signs = np.array(signs).reshape(-1, 1)
+
+    def _meet(self, first: int, second: int, wrench: NDArray[np.float64]) -> None:
+        """Note a contact that is no sole on the floor."""
+        bears = bool(wrench[0] > 0.0)
+        self._others += int(bears)
+        self.lies = self.lies or (bears and (first in self._floors or second in self._floors))
+        self._other_force = max(self._other_force, float(np.linalg.norm(wrench[:3])))
 
     def observed(self) -> dict[str, NDArray[np.generic]]:
         """Channels of one sample.

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from enpointe.controllers.plant import Plant
 from enpointe.sim.balance import LOADED
 
-__all__ = ["FootState", "foot_states", "ground_forces"]
+__all__ = ["FootState", "foot_states", "ground_forces", "sole_sides"]
 
 Array = NDArray[np.float64]
 SIDES = ("left", "right")
@@ -40,7 +40,7 @@ def ground_forces(model: mujoco.MjModel, forces: Array) -> Array:
         model: The dancer; a sole belongs to the foot that its name begins with.
         forces: (..., S, 3), floor on sole.
     """
-    sides = _sole_sides(model)
+    sides = sole_sides(model)
     return np.stack([forces[..., sides == side, :].sum(axis=-2) for side in SIDES], axis=-2)
 
 
@@ -73,5 +73,6 @@ def _sole_names(model: mujoco.MjModel) -> tuple[str, ...]:
     return tuple(model.geom(int(g)).name for g in Plant(model).sole_geoms)
 
 
-def _sole_sides(model: mujoco.MjModel) -> NDArray[np.str_]:
+def sole_sides(model: mujoco.MjModel) -> NDArray[np.str_]:
+    """Side of each sole, (S,)."""
     return np.array([name.partition("_")[0] for name in _sole_names(model)])

@@ -6,60 +6,25 @@ x = [qacc, lambda], see `Instant`.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple, Protocol
+from typing import ClassVar, Protocol
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from enpointe.controllers.wholebody.instant import Instant
+from enpointe.controllers.wholebody.rows import Bounds, Equality, Limits
 
 __all__ = [
-    "Bounds",
     "Constraint",
-    "Equality",
     "FloatingBase",
     "FrictionPyramids",
     "JointRange",
-    "Limits",
     "TorqueLimits",
     "joint_torques",
 ]
 
 Array = NDArray[np.float64]
-
-
-class Equality(NamedTuple):
-    """Rows matrix x = target.
-
-    Attributes:
-        matrix: (R, n).
-        target: (R,).
-    """
-
-    matrix: Array
-    target: Array
-
-
-class Limits(NamedTuple):
-    """Rows low <= matrix x <= high.
-
-    Attributes:
-        matrix: (R, n).
-        low: (R,).
-        high: (R,).
-    """
-
-    matrix: Array
-    low: Array
-    high: Array
-
-
-class Bounds(NamedTuple):
-    """Bounds low <= x <= high on the unknowns, (n,) each."""
-
-    low: Array
-    high: Array
 
 
 class Constraint(Protocol):
@@ -78,8 +43,7 @@ class FloatingBase:
     name: ClassVar[str] = "floating base"
 
     def limits(self, instant: Instant) -> Equality:
-        matrix = np.hstack([instant.mass_matrix[:6], -instant.force_matrix[:6]])
-        return Equality(matrix, -instant.bias[:6])
+        return Equality(instant.dynamics[:6], -instant.bias[:6])
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,9 +59,8 @@ class TorqueLimits:
 
     def limits(self, instant: Instant) -> Limits:
         dofs = instant.actuated
-        matrix = np.hstack([instant.mass_matrix[dofs], -instant.force_matrix[dofs]])
         bias = instant.bias[dofs]
-        return Limits(matrix, -self.limit - bias, self.limit - bias)
+        return Limits(instant.dynamics[dofs], -self.limit - bias, self.limit - bias)
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,13 +115,15 @@ class JointRange:
     def limits(self, instant: Instant) -> Bounds:
         ahead = self.horizon
         q, v = instant.qpos[self.angles], instant.qvel[self.dofs]
-        drift = q + v * ahead
-        high = np.minimum(2 * (self.high - drift) / ahead**2, (self.speed - v) / ahead)
-        low = np.maximum(2 * (self.low - drift) / ahead**2, (-self.speed - v) / ahead)
+        drift, scale = q + v * ahead, 2.0 / ahead**2
+        fastest, slowing = self.speed / ahead, v / ahead
+        high = np.minimum(scale * (self.high - drift), fastest - slowing)
+        low = np.maximum(scale * (self.low - drift), -fastest - slowing)
         crossed = low > high
-        middle = 0.5 * (self.low + self.high)
-        low = np.where(crossed & (q > middle), high, low)
-        high = np.where(crossed & (q <= middle), low, high)
+        if crossed.any():
+            middle = 0.5 * (self.low + self.high)
+            low = np.where(crossed & (q > middle), high, low)
+            high = np.where(crossed & (q <= middle), low, high)
         bounds = Bounds(np.full(instant.size, -np.inf), np.full(instant.size, np.inf))
         bounds.low[self.dofs], bounds.high[self.dofs] = low, high
         return bounds
@@ -166,6 +131,4 @@ class JointRange:
 
 def joint_torques(instant: Instant, unknowns: Array) -> Array:
     """tau = M_j qacc + h_j - J_j^T f, (nu,), N m, at a solution."""
-    qacc, edges = unknowns[: instant.nv], unknowns[instant.nv :]
-    forces = instant.mass_matrix @ qacc + instant.bias - instant.force_matrix @ edges
-    return np.asarray(forces[instant.actuated])
+    return np.asarray((instant.dynamics @ unknowns + instant.bias)[instant.actuated])

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from bisect import bisect_right
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -29,12 +32,11 @@ class ContactSchedule:
     def __init__(self, reference: Reference) -> None:
         level = np.linalg.norm(np.asarray(reference.point_velocity)[:, :, :2], axis=2)
         self.planned = (reference.clearance < NEAR) & (level < PLANTED_SPEED)
-        self._time = reference.time
+        self._times = reference.time.tolist()
 
     def at(self, t: float) -> NDArray[np.bool_]:
         """Soles planned to bear at `t` seconds, (S,)."""
-        i = int(np.searchsorted(self._time, t, side="right")) - 1
-        return np.asarray(self.planned[min(max(i, 0), len(self._time) - 1)])
+        return np.asarray(self.planned[max(bisect_right(self._times, t) - 1, 0)])
 
     def active(self, t: float, clearance: Array) -> NDArray[np.int64]:
         """Rows of the soles that are planned to bear at `t` and measured on the floor, (A,)."""
@@ -64,10 +66,10 @@ class FootShift:
     ) -> Array:
         """The shift (2,), m, after `period` seconds with the soles at `points` (S, 3)."""
         if len(active):
-            share = 1.0 - np.exp(-period / self._settling)
+            share = 1.0 - math.exp(-period / self._settling)
             self.value = self.value + share * (_apart(points, wanted, active) - self.value)
         return self.value
 
 
 def _apart(points: Array, wanted: Array, active: NDArray[np.int64]) -> Array:
-    return np.asarray((points[active, :2] - wanted[active, :2]).mean(axis=0))
+    return np.asarray((points - wanted)[active, :2].sum(axis=0) / len(active))

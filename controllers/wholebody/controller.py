@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from time import perf_counter
@@ -152,7 +153,7 @@ class WholeBody:
         """Solve for this period."""
         start = perf_counter()
         self.problem = self.build(t, state)
-        self.problem.programme  # noqa: B018
+        self.problem.separate  # noqa: B018
         built = perf_counter()
         self.unknowns = self.problem.solve()
         solved = perf_counter()
@@ -174,7 +175,7 @@ class WholeBody:
         return WholeBodyProblem.build(instant, goal.shifted(shift), self.tasks, self.constraints)
 
     def _obey(self, instant: Instant, unknowns: Array) -> Command:
-        dt, keep = self._period, np.exp(-self._period / TONE_MEMORY)
+        dt, keep = self._period, math.exp(-self._period / TONE_MEMORY)
         acceleration = unknowns[self._dofs]
         angle, speed = instant.qpos[self._angles], instant.qvel[self._dofs]
         velocity = speed + keep * (self._velocity - speed)

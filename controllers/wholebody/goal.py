@@ -46,7 +46,7 @@ class Goal:
 
     def shifted(self, shift: Array) -> Goal:
         """The same, moved over the floor by `shift` (2,), m."""
-        offset = np.array([shift[0], shift[1], 0.0])
+        offset = np.array([*shift.tolist(), 0.0])
         qpos = self.qpos.copy()
         qpos[:3] += offset
         return replace(self, qpos=qpos, com=self.com + offset, points=self.points + offset)

@@ -33,13 +33,14 @@ class Instant:
         gravity: m/s^2, positive.
         com: c, (3,), m.
         com_velocity: (3,), m/s.
-        momentum_matrix: (3, nv), angular momentum about the CoM is this times qvel.
+        angular_momentum: About the CoM, (3,), kg m^2/s.
         soles: Sole geoms, (S,).
         points: Lowest point of each sole, (S, 3), m.
+        velocities: Of those points, J v, (S, 3), m/s.
         jacobians: Of those points, (S, 3, nv).
         drifts: Their accelerations at qacc = 0, J' v, (S, 3), m/s^2.
         active: Rows of `soles` that may bear force, (A,).
-        edges: Directions of the forces' generators, (E, 3).
+        edges: Directions of the forces' generators, (E, 3), sole by sole as in `active`.
         edge_point: Row of `soles` of each generator, (E,).
         actuated: Dofs of the actuators, (nu,).
         root_rotation: Of the pelvis, (3, 3).
@@ -53,9 +54,10 @@ class Instant:
     gravity: float
     com: Array
     com_velocity: Array
-    momentum_matrix: Array
+    angular_momentum: Array
     soles: Indices
     points: Array
+    velocities: Array
     jacobians: Array
     drifts: Array
     active: Indices
@@ -82,15 +84,27 @@ class Instant:
         return np.flatnonzero(rest)
 
     @property
-    def angular_momentum(self) -> Array:
-        """About the CoM, (3,), kg m^2/s."""
-        return np.asarray(self.momentum_matrix @ self.qvel)
+    def accelerations(self) -> slice:
+        """Where qacc stands among the unknowns."""
+        return slice(0, len(self.qvel))
+
+    @property
+    def forces(self) -> slice:
+        """Where lambda stands among the unknowns."""
+        return slice(len(self.qvel), len(self.qvel) + len(self.edges))
 
     @cached_property
     def force_matrix(self) -> Array:
         """J^T of all generators, (nv, E): generalised force of each lambda."""
-        spread = np.matmul(self.edges[:, None, :], self.jacobians[self.edge_point])
-        return np.ascontiguousarray(spread[:, 0, :].T)
+        if len(self.edges) == 0:
+            return np.zeros((self.nv, 0))
+        edges = self.edges.reshape(len(self.active), -1, 3)
+        return np.asarray((edges @ self.jacobians[self.active]).reshape(-1, self.nv).T)
+
+    @cached_property
+    def dynamics(self) -> Array:
+        """[M, -J^T], (nv, n): root and joints must give this times x, plus the bias."""
+        return np.concatenate([self.mass_matrix, -self.force_matrix], axis=1)
 
     def sole_forces(self, unknowns: Array) -> Array:
         """Forces on each sole at a solution, (S, 3), N."""
@@ -113,14 +127,11 @@ class Observer:
         self.model = model
         self._soles = self.plant.sole_geoms
         self._radius = np.array(model.geom_size[self._soles, 0])
-        self._bodies = np.unique(model.geom_bodyid[self._soles])
-        self._body_row = np.searchsorted(self._bodies, model.geom_bodyid[self._soles])
-        self._pyramid = np.array(
-            [[friction, 0, 1], [-friction, 0, 1], [0, friction, 1], [0, -friction, 1]]
-        )
-        nv, count = model.nv, len(self._bodies)
-        self._linear, self._angular = np.zeros((count, 3, nv)), np.zeros((count, 3, nv))
-        self._linear_rate, self._angular_rate = np.zeros((count, 3, nv)), np.zeros((count, 3, nv))
+        self._bodies = np.array(model.geom_bodyid[self._soles])
+        self._roots = np.array(model.body_rootid[self._bodies])
+        self._carries = _carries(model, self._bodies)
+        pyramid = [[friction, 0, 1], [-friction, 0, 1], [0, friction, 1], [0, -friction, 1]]
+        self._edges = np.tile(np.array(pyramid), (len(self._soles), 1))
 
     @property
     def soles(self) -> Indices:
@@ -129,8 +140,19 @@ class Observer:
 
     def place(self, qpos: Array, qvel: Array) -> None:
         """Bring the model to a state; `clearance` and `instant` then speak of it."""
-        self.plant.place(qpos, qvel)
-        mujoco.mj_subtreeVel(self.model, self.plant.data)
+        model, data = self.model, self.plant.data
+        data.qpos[:], data.qvel[:] = qpos, qvel
+        # Stages of mj_fwdPosition and mj_fwdVelocity; collisions cost more than all of these, and
+        # the programme has its own picture of the floor.
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        mujoco.mj_makeM(model, data)
+        mujoco.mj_comVel(model, data)
+        mujoco.mj_passive(model, data)
+        mujoco.mj_rne(model, data, 0, data.qfrc_bias)
+        mujoco.mj_subtreeVel(model, data)
+        # With qacc at zero, where it stays, these are the bodies' accelerations J' v.
+        mujoco.mj_rnePostConstraint(model, data)
 
     def clearance(self) -> Array:
         """Height of each sole above the floor, (S,), m."""
@@ -148,10 +170,8 @@ class Observer:
         model, data, nv = self.model, self.plant.data, self.model.nv
         mass_matrix = np.zeros((nv, nv))
         mujoco.mj_fullM(model, data, mass_matrix)
-        momentum = np.zeros((3, nv))
-        mujoco.mj_angmomMat(model, data, momentum, 0)
         points = self.points()
-        jacobians, drifts = self._contact_kinematics(points)
+        jacobians, velocities, drifts = self._contact_kinematics(points)
         return Instant(
             qpos=np.array(data.qpos),
             qvel=np.array(data.qvel),
@@ -161,45 +181,70 @@ class Observer:
             gravity=self.plant.gravity,
             com=np.array(data.subtree_com[0]),
             com_velocity=np.array(data.subtree_linvel[0]),
-            momentum_matrix=momentum,
+            angular_momentum=np.array(data.subtree_angmom[0]),
             soles=self._soles,
             points=points,
+            velocities=velocities,
             jacobians=jacobians,
             drifts=drifts,
             active=active,
-            edges=np.tile(self._pyramid, (len(active), 1)),
+            edges=self._edges[: 4 * len(active)],
             edge_point=np.repeat(active, 4),
             actuated=self.plant.actuated_dofs,
             root_rotation=np.array(data.xmat[1]).reshape(3, 3),
         )
 
-    def _contact_kinematics(self, points: Array) -> tuple[Array, Array]:
-        """Jacobians (S, 3, nv) of the soles' lowest points and their J' v (S, 3).
+    def _contact_kinematics(self, points: Array) -> tuple[Array, Array, Array]:
+        """Jacobians (S, 3, nv) of the soles' lowest points, J v and J' v (S, 3).
 
-        A point r from its body's origin:  J = J_o - [r] J_r,
-        a = a_o + alpha x r + omega x (omega x r).
+        MuJoCo keeps a body's velocity as (omega, v), v that of the body's frame carried to the
+        whole's centre of mass c, and accelerations and motion axes likewise. At a point c + r
+
+            v_p = [-[r], 1] (omega, v),    a_p = [-[r], 1] (alpha, a) + omega x v_p,
+
+        and a column of J is the first with a motion axis for (omega, v).
         """
-        model, data = self.model, self.plant.data
-        for i, body in enumerate(self._bodies):
-            origin = data.xpos[body]
-            mujoco.mj_jac(model, data, self._linear[i], self._angular[i], origin, body)
-            mujoco.mj_jacDot(model, data, self._linear_rate[i], self._angular_rate[i], origin, body)
-        row = self._body_row
-        arm = points - data.xpos[self._bodies][row]
-        linear, angular = self._linear[row], self._angular[row]
-        jacobians = linear - skew(arm) @ angular
-        velocity = data.qvel
-        spin = (self._angular @ velocity)[row]
-        linear_drift = (self._linear_rate @ velocity)[row]
-        angular_drift = (self._angular_rate @ velocity)[row]
-        turning = skew(angular_drift) + skew(spin) @ skew(spin)
-        return jacobians, linear_drift + (turning @ arm[:, :, None])[:, :, 0]
+        data, count = self.plant.data, len(points)
+        arms = points - data.subtree_com[self._roots]
+        shift = np.empty((count, 3, 6))
+        shift[:, :, :3], shift[:, :, 3:] = -skew(arms), _ONE
+        jacobians = (shift.reshape(-1, 6) @ data.cdof.T).reshape(count, 3, -1)
+        jacobians *= self._carries
+        velocities = (jacobians.reshape(3 * count, -1) @ data.qvel).reshape(-1, 3)
+        acceleration = data.cacc[self._bodies]
+        turning = np.concatenate([acceleration[:, :3], data.cvel[self._bodies, :3]])
+        turned = _cross(turning, np.concatenate([arms, velocities]))
+        # MuJoCo lets the world rise at -g instead of pulling the bodies down.
+        drifts = acceleration[:, 3:] + turned[:count] + turned[count:] + self.model.opt.gravity
+        return jacobians, velocities, drifts
+
+
+def _carries(model: mujoco.MjModel, bodies: Indices) -> Array:
+    """1 where a dof moves a body and 0 where it doesn't, (S, 1, nv)."""
+    carries = np.zeros((len(bodies), 1, model.nv))
+    for row, body in enumerate(bodies):
+        ancestor = int(body)
+        while ancestor != 0:
+            carries[row, 0, model.dof_bodyid == ancestor] = 1.0
+            ancestor = int(model.body_parentid[ancestor])
+    return carries
 
 
 def skew(vectors: Array) -> Array:
     """[a] with [a] b = a x b, (N, 3, 3), of vectors (N, 3)."""
-    matrices = np.zeros((len(vectors), 3, 3))
-    x, y, z = vectors.T
-    matrices[:, 0, 1], matrices[:, 0, 2], matrices[:, 1, 2] = -z, y, -x
-    matrices[:, 1, 0], matrices[:, 2, 0], matrices[:, 2, 1] = z, -y, x
-    return matrices
+    matrices = np.zeros((len(vectors), 9))
+    matrices[:, _OFF_DIAGONAL] = vectors.take(_COMPONENT, axis=1) * _SIGN
+    return matrices.reshape(-1, 3, 3)
+
+
+def _cross(a: Array, b: Array) -> Array:
+    """a x b of vectors (N, 3); numpy's own takes three times as long for a few."""
+    left = a.take(_NEXT, axis=1) * b.take(_LAST, axis=1)
+    return np.asarray(left - a.take(_LAST, axis=1) * b.take(_NEXT, axis=1))
+
+
+_ONE = np.eye(3)
+_NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])
+_OFF_DIAGONAL = np.array([1, 2, 3, 5, 6, 7])
+_COMPONENT = np.array([2, 1, 2, 0, 1, 0])
+_SIGN = np.array([-1.0, 1.0, 1.0, -1.0, -1.0, 1.0])

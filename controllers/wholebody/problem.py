@@ -15,13 +15,15 @@ from functools import cached_property
 from typing import TypeVar
 
 import numpy as np
-import qpsolvers
 from numpy.typing import NDArray
 
-from enpointe.controllers.wholebody.constraints import Bounds, Constraint, Equality, Limits
+from enpointe.controllers.wholebody.constraints import Constraint
+from enpointe.controllers.wholebody.elimination import Cost, eliminated
 from enpointe.controllers.wholebody.goal import Goal
 from enpointe.controllers.wholebody.instant import Instant
-from enpointe.controllers.wholebody.tasks import Rows, Task
+from enpointe.controllers.wholebody.programme import Programme
+from enpointe.controllers.wholebody.rows import Bounds, Direct, Equality, Limits, Rows
+from enpointe.controllers.wholebody.tasks import Task
 
 __all__ = ["WholeBodyProblem"]
 
@@ -44,7 +46,7 @@ class WholeBodyProblem:
     """
 
     instant: Instant
-    rows: Mapping[str, Rows]
+    rows: Mapping[str, Rows | Direct]
     limits: Mapping[str, Equality | Limits | Bounds]
 
     @classmethod
@@ -63,61 +65,131 @@ class WholeBodyProblem:
         )
 
     @cached_property
-    def programme(self) -> qpsolvers.Problem:
-        """The same as matrices P, q, G, h, A, b, lb, ub of  min x'Px/2 + q'x."""
+    def cost(self) -> Cost:
+        """Half of what is minimised, less its value at zero."""
+        return self._quadratic(0, self.instant.size)
+
+    @cached_property
+    def separate(self) -> tuple[Cost, Cost] | None:
+        """The cost of accelerations and that of forces; None if a task speaks of both at once."""
+        nv, n = self.instant.nv, self.instant.size
+        if any(first < nv < end for first, end in self._blocks):
+            return None
+        return self._quadratic(0, nv), self._quadratic(nv, n)
+
+    @cached_property
+    def bounds(self) -> Bounds:
+        """All bounds on the unknowns together."""
         n = self.instant.size
-        matrix = np.vstack([r.matrix for r in self.rows.values()])
-        target = np.concatenate([r.target for r in self.rows.values()])
-        weighted = matrix * np.concatenate([r.weight for r in self.rows.values()])[:, None]
-        hessian = weighted.T @ matrix
-        hessian[np.arange(n), np.arange(n)] += REGULARISATION
         low, high = np.full(n, -np.inf), np.full(n, np.inf)
         for bounds in self._of(Bounds):
             np.maximum(low, bounds.low, out=low)
             np.minimum(high, bounds.high, out=high)
-        sided, equal = self._of(Limits), self._of(Equality)
-        return qpsolvers.Problem(
-            hessian,
-            -(target @ weighted),
-            np.vstack([np.vstack([s.matrix, -s.matrix]) for s in sided]) if sided else None,
-            np.concatenate([np.concatenate([s.high, -s.low]) for s in sided]) if sided else None,
-            np.vstack([e.matrix for e in equal]) if equal else None,
-            np.concatenate([e.target for e in equal]) if equal else None,
-            low,
-            high,
+        return Bounds(low, high)
+
+    @cached_property
+    def equality(self) -> Equality:
+        """All rows that must be met."""
+        equal = self._of(Equality)
+        if len(equal) == 1:
+            return equal[0]
+        matrices = [np.empty((0, self.instant.size)), *(e.matrix for e in equal)]
+        return Equality(np.concatenate(matrices), np.concatenate([[], *(e.target for e in equal)]))
+
+    @cached_property
+    def programme(self) -> Programme:
+        """The whole as matrices."""
+        (low, high), equal, sided = self.bounds, self.equality, self._of(Limits)
+        return Programme(
+            *self.cost,
+            np.concatenate([equal.matrix, *(s.matrix for s in sided)]),
+            np.concatenate([low, equal.target, *(s.low for s in sided)]),
+            np.concatenate([high, equal.target, *(s.high for s in sided)]),
+            len(equal.target),
         )
+
+    @cached_property
+    def _blocks(self) -> dict[tuple[int, int], list[Rows]]:
+        """Tasks by the range of unknowns that they speak of."""
+        blocks: dict[tuple[int, int], list[Rows]] = {}
+        for rows in self.rows.values():
+            if isinstance(rows, Rows) and len(rows.target):
+                first, end, _ = rows.columns.indices(self.instant.size)
+                blocks.setdefault((first, end), []).append(rows)
+        return blocks
+
+    @cached_property
+    def _direct(self) -> tuple[Array, Array]:
+        """What wishes for unknowns themselves add to the diagonal and to the gradient, (n,)."""
+        n = self.instant.size
+        diagonal, gradient = np.full(n, REGULARISATION), np.zeros(n)
+        for rows in self.rows.values():
+            if isinstance(rows, Direct):
+                diagonal[rows.columns] += rows.weight
+                gradient[rows.columns] -= rows.weight * rows.target
+        return diagonal, gradient
+
+    def _quadratic(self, start: int, stop: int) -> Cost:
+        """The cost of the unknowns from `start` to `stop`, of tasks that speak of no others."""
+        n = stop - start
+        diagonal, slope = self._direct
+        hessian, gradient = np.zeros((n, n)), slope[start:stop].copy()
+        hessian.reshape(-1)[:: n + 1] = diagonal[start:stop]
+        for (first, end), block in self._blocks.items():
+            if start <= first and end <= stop:
+                here = slice(first - start, end - start)
+                matrix = np.concatenate([r.matrix for r in block])
+                weighted = matrix * np.concatenate([r.weight for r in block])[:, None]
+                hessian[here, here] += weighted.T @ matrix
+                gradient[here] -= np.concatenate([r.target for r in block]) @ weighted
+        return Cost(hessian, gradient)
 
     def _of(self, kind: type[_Kind]) -> list[_Kind]:
         return [limit for limit in self.limits.values() if isinstance(limit, kind)]
 
-    def solve(self, solver: str = "daqp") -> Array | None:
+    def solve(self) -> Array | None:
         """The unknowns (n,), or None where the constraints leave no solution.
 
-        What a solver returns is believed only after a look at its constraints.
+        Limits on accelerations and torques are left out at first. A solution that keeps them all
+        the same is the best of a larger set and so the best of the smaller one; where it doesn't,
+        the whole is solved. What a solver returns is believed only after a look at all constraints.
         """
-        solution = qpsolvers.solve_problem(self.programme, solver)
-        if not solution.found or solution.x is None or not np.all(np.isfinite(solution.x)):
+        unknowns = self._eased()
+        if unknowns is None:
+            unknowns = self.programme.solve()
+            if unknowns is not None and self.violation(unknowns) >= TOLERANCE:
+                return None
+        return unknowns
+
+    def _eased(self) -> Array | None:
+        """The solution if no acceleration and no torque is at its limit."""
+        if self.separate is None:
             return None
-        unknowns = np.asarray(solution.x)
-        return unknowns if self.violation(unknowns) < TOLERANCE else None
+        nv, (low, high) = self.instant.nv, self.bounds
+        unknowns = eliminated(*self.separate, self.equality, low[nv:], high[nv:])
+        if unknowns is None:
+            return None
+        allowed = np.zeros(len(unknowns))
+        allowed[nv:] = TOLERANCE
+        kept = bool(np.all((unknowns >= low - allowed) & (unknowns <= high + allowed)))
+        kept = kept and _outside(self.equality, unknowns) < TOLERANCE
+        kept = kept and all(_outside(sided, unknowns) == 0.0 for sided in self._of(Limits))
+        return unknowns if kept else None
 
     def violation(self, unknowns: Array) -> float:
         """The largest amount by which any constraint is broken: N, N m, rad/s^2."""
-        worst = 0.0
-        for limit in self.limits.values():
-            if isinstance(limit, Bounds):
-                low, high, value = limit.low, limit.high, unknowns
-            else:
-                value = limit.matrix @ unknowns
-                low, high = (
-                    (limit.target, limit.target)
-                    if isinstance(limit, Equality)
-                    else (limit.low, limit.high)
-                )
-            outside = np.maximum(low - value, value - high)
-            worst = max(worst, float(outside.max(initial=0.0)))
-        return worst
+        return max((_outside(limit, unknowns) for limit in self.limits.values()), default=0.0)
 
     def errors(self, unknowns: Array) -> dict[str, Array]:
         """What each task is left with, A x - b, in its own unit."""
-        return {name: r.matrix @ unknowns - r.target for name, r in self.rows.items()}
+        return {name: rows.error(unknowns) for name, rows in self.rows.items()}
+
+
+def _outside(limit: Equality | Limits | Bounds, unknowns: Array) -> float:
+    """The largest amount by which one constraint is broken, 0 if by none."""
+    if isinstance(limit, Equality):
+        outside = np.abs(limit.matrix @ unknowns - limit.target)
+    else:
+        value = unknowns if isinstance(limit, Bounds) else limit.matrix @ unknowns
+        outside = np.maximum(limit.low - value, value - limit.high)
+    return float(outside.max(initial=0.0))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
+
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
@@ -9,16 +11,21 @@ from numpy.typing import NDArray
 from enpointe.controllers.wholebody.goal import Goal
 from enpointe.controllers.wholebody.instant import Observer
 from enpointe.motion import Motion
+from enpointe.motion.averaging import averaged
 
 __all__ = ["Reference"]
 
 Array = NDArray[np.float64]
+_WHOLE = 0.2
+"""s: rates of the body as a whole are averaged over this window. Where a foot leaves, a corner of a
+millimetre in the poses is several m/s^2 and hundreds of N m, which no floor gives."""
 
 
 class Reference:
     """The motion's own centre of mass, angular momentum and soles at every sample.
 
-    Rates are central differences of the samples.
+    Rates are central differences of the samples; those of the centre of mass and of the angular
+    momentum are averaged.
 
     Args:
         motion: What is to be danced.
@@ -47,45 +54,67 @@ class Reference:
             self.clearance[i] = observer.clearance()
             self.points[i] = observer.points()
         self.point_velocity = self._rate(self.points)
-        places = [com, self.points]
-        rates = [
+        # One array, so that one interpolation a period serves all of it; what stands still at
+        # both ends last.
+        parts = (
+            motion.qpos,
+            com,
+            self.points,
+            motion.qvel,
+            motion.qacc,
             com_velocity,
-            self._rate(com_velocity),
+            self._whole_rate(com_velocity),
             momentum,
-            self._rate(momentum),
+            self._whole_rate(momentum),
             self.point_velocity,
             self._rate(self.point_velocity),
-        ]
-        # One array, so that one interpolation a period serves all of it.
-        self._table = np.hstack([each.reshape(count, -1) for each in (*places, *rates)])
-        self._moves = 3 + 3 * soles
+        )
+        flat = [part.reshape(count, -1) for part in parts]
+        self._table = np.concatenate(flat, axis=1)
+        ends = np.cumsum([part.shape[1] for part in flat]).tolist()
+        self._parts = tuple(map(slice, [0, *ends[:-1]], ends))
+        self._moves = self._parts[3].start
+        self._times = self.time.tolist()
 
     def _rate(self, values: Array) -> Array:
         return np.asarray(np.gradient(values, self.time, axis=0), dtype=np.float64)
 
+    def _whole_rate(self, values: Array) -> Array:
+        return averaged(self._rate(values), _WHOLE, 1.0 / float(np.median(np.diff(self.time))))
+
     def at(self, t: float) -> Goal:
         """The goal at `t` seconds; still at both ends."""
-        qpos, qvel, qacc = self.motion.sample(t)
-        i = min(max(int(np.searchsorted(self.time, t, side="right")) - 1, 0), len(self.time) - 2)
-        w = min(max((t - self.time[i]) / (self.time[i + 1] - self.time[i]), 0.0), 1.0)
+        times = self._times
+        i = min(max(bisect_right(times, t) - 1, 0), len(times) - 2)
+        w = min(max((t - times[i]) / (times[i + 1] - times[i]), 0.0), 1.0)
         row = (1 - w) * self._table[i] + w * self._table[i + 1]
-        if not 0.0 <= t < self.time[-1]:
+        if not 0.0 <= t < times[-1]:
             row[self._moves :] = 0.0
-        rotation = np.zeros(9)
-        mujoco.mju_quat2Mat(rotation, qpos[3:7])
-        points, rates = row[3 : self._moves], row[self._moves :]
-        velocities, accelerations = np.split(rates[12:], 2)
+        qpos, com, points, qvel, qacc, *rates = (row[part] for part in self._parts)
+        mujoco.mj_normalizeQuat(self.motion.model, qpos)
         return Goal(
             qpos=qpos,
             qvel=qvel,
             qacc=qacc,
-            com=row[:3],
-            com_velocity=rates[:3],
-            com_acceleration=rates[3:6],
-            angular_momentum=rates[6:9],
-            angular_momentum_rate=rates[9:12],
-            root_rotation=rotation.reshape(3, 3),
+            com=com,
+            com_velocity=rates[0],
+            com_acceleration=rates[1],
+            angular_momentum=rates[2],
+            angular_momentum_rate=rates[3],
+            root_rotation=_rotation(qpos[3:7]),
             points=points.reshape(-1, 3),
-            point_velocity=velocities.reshape(-1, 3),
-            point_acceleration=accelerations.reshape(-1, 3),
+            point_velocity=rates[4].reshape(-1, 3),
+            point_acceleration=rates[5].reshape(-1, 3),
         )
+
+
+def _rotation(quaternion: Array) -> Array:
+    """The matrix (3, 3) of a unit quaternion (w, x, y, z)."""
+    w, x, y, z = quaternion.tolist()
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )

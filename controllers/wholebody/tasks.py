@@ -10,14 +10,16 @@ out made the dancer fall in all that were tried without it.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple, Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from enpointe.controllers.wholebody.goal import Goal
 from enpointe.controllers.wholebody.instant import Instant, skew
+from enpointe.controllers.wholebody.rows import Direct, Rows
 
 __all__ = [
     "AngularMomentum",
@@ -25,7 +27,6 @@ __all__ = [
     "Contact",
     "Orientation",
     "Posture",
-    "Rows",
     "SwingFoot",
     "Task",
 ]
@@ -33,26 +34,12 @@ __all__ = [
 Array = NDArray[np.float64]
 
 
-class Rows(NamedTuple):
-    """Rows of a least-squares problem: weight |matrix x - target|^2.
-
-    Attributes:
-        matrix: (R, n).
-        target: (R,).
-        weight: (R,).
-    """
-
-    matrix: Array
-    target: Array
-    weight: Array
-
-
 class Task(Protocol):
     """One wish."""
 
     name: ClassVar[str]
 
-    def rows(self, instant: Instant, goal: Goal) -> Rows:
+    def rows(self, instant: Instant, goal: Goal) -> Rows | Direct:
         """Its rows at this moment; none where it does not apply."""
 
 
@@ -76,7 +63,7 @@ class CentreOfMass:
     """
 
     name: ClassVar[str] = "centre of mass"
-    weight: float = 300.0
+    weight: float = 1000.0
     capture_gain: float = 5.0
     stiffness: float = 300.0
     damping: float = 35.0
@@ -84,11 +71,10 @@ class CentreOfMass:
     def rows(self, instant: Instant, goal: Goal) -> Rows:
         if len(instant.edges) == 0:
             return _nothing(instant)
-        matrix = np.zeros((3, instant.size))
-        matrix[:, instant.nv :] = instant.edges.T / instant.mass
         target = self.acceleration(instant, goal)
         target[2] += instant.gravity
-        return Rows(matrix, target, np.full(3, self.weight))
+        weight = np.full(3, self.weight)
+        return Rows(instant.edges.T / instant.mass, target, weight, instant.forces)
 
     def acceleration(self, instant: Instant, goal: Goal) -> Array:
         """The acceleration asked for, (3,), m/s^2."""
@@ -111,18 +97,18 @@ class AngularMomentum:
     """
 
     name: ClassVar[str] = "angular momentum"
-    weight: float = 0.02
+    weight: float = 0.05
     gain: float = 5.0
 
     def rows(self, instant: Instant, goal: Goal) -> Rows:
         if len(instant.edges) == 0:
             return _nothing(instant)
-        arms = instant.points[instant.edge_point] - instant.com
-        matrix = np.zeros((3, instant.size))
-        matrix[:, instant.nv :] = (skew(arms) @ instant.edges[:, :, None])[:, :, 0].T
+        arms = instant.points[instant.active] - instant.com
+        moments = instant.edges.reshape(len(arms), -1, 3) @ skew(arms).transpose(0, 2, 1)
         error = goal.angular_momentum - instant.angular_momentum
         target = goal.angular_momentum_rate + self.gain * error
-        return Rows(matrix, target, np.full(3, self.weight))
+        weight = np.full(3, self.weight)
+        return Rows(moments.reshape(-1, 3).T, target, weight, instant.forces)
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,12 +127,10 @@ class Contact:
     damping: float = 30.0
 
     def rows(self, instant: Instant, goal: Goal) -> Rows:
-        jacobian = instant.jacobians[instant.active].reshape(-1, instant.nv)
-        matrix = np.zeros((len(jacobian), instant.size))
-        matrix[:, : instant.nv] = jacobian
-        target = -instant.drifts[instant.active].ravel()
-        target -= self.damping * (jacobian @ instant.qvel)
-        return Rows(matrix, target, np.full(len(target), self.weight))
+        active = instant.active
+        jacobian = instant.jacobians[active].reshape(-1, instant.nv)
+        target = -(instant.drifts + self.damping * instant.velocities)[active].ravel()
+        return Rows(jacobian, target, np.full(len(target), self.weight), instant.accelerations)
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,20 +149,18 @@ class Orientation:
     """
 
     name: ClassVar[str] = "orientation"
-    weight: float = 2.0
+    weight: float = 1.0
     weight_aloft: float = 0.04
     stiffness: float = 200.0
     damping: float = 28.0
 
-    def rows(self, instant: Instant, goal: Goal) -> Rows:
-        matrix = np.zeros((3, instant.size))
-        matrix[:, 3:6] = np.eye(3)
+    def rows(self, instant: Instant, goal: Goal) -> Direct:
         between = instant.root_rotation.T @ goal.root_rotation
         target = self.stiffness * _rotation_vector(between)
         target += self.damping * (between @ goal.qvel[3:6] - instant.qvel[3:6])
         target += between @ goal.qacc[3:6]
         weight = self.weight if len(instant.active) else self.weight_aloft
-        return Rows(matrix, target, np.full(3, weight))
+        return Direct(target, np.full(3, weight), slice(3, 6))
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,14 +178,12 @@ class Posture:
     stiffness: float = 400.0
     damping: float = 40.0
 
-    def rows(self, instant: Instant, goal: Goal) -> Rows:
+    def rows(self, instant: Instant, goal: Goal) -> Direct:
         dofs = instant.actuated
         angles = dofs + len(instant.qpos) - instant.nv
-        matrix = np.zeros((len(dofs), instant.size))
-        matrix[np.arange(len(dofs)), dofs] = 1.0
         target = goal.qacc[dofs] + self.stiffness * (goal.qpos[angles] - instant.qpos[angles])
         target += self.damping * (goal.qvel[dofs] - instant.qvel[dofs])
-        return Rows(matrix, target, np.full(len(dofs), self.weight))
+        return Direct(target, np.full(len(dofs), self.weight), dofs)
 
 
 @dataclass(frozen=True, slots=True)
@@ -228,29 +208,25 @@ class SwingFoot:
     def rows(self, instant: Instant, goal: Goal) -> Rows:
         away = instant.resting
         jacobian = instant.jacobians[away].reshape(-1, instant.nv)
-        matrix = np.zeros((len(jacobian), instant.size))
-        matrix[:, : instant.nv] = jacobian
-        place = (goal.points[away] - goal.com) - (instant.points[away] - instant.com)
-        velocity = instant.jacobians[away] @ instant.qvel
-        rate = goal.point_velocity[away] - goal.com_velocity - velocity + instant.com_velocity
-        target = goal.point_acceleration[away] - instant.drifts[away]
-        target = target + self.stiffness * place + self.damping * rate
-        return Rows(matrix, target.ravel(), np.full(len(jacobian), self.weight / 6.0))
+        place = goal.points - instant.points - (goal.com - instant.com)
+        rate = goal.point_velocity - instant.velocities
+        rate -= goal.com_velocity - instant.com_velocity
+        target = goal.point_acceleration - instant.drifts
+        target = (target + self.stiffness * place + self.damping * rate)[away].ravel()
+        weight = np.full(len(target), self.weight / 6.0)
+        return Rows(jacobian, target, weight, instant.accelerations)
 
 
 def _nothing(instant: Instant) -> Rows:
-    return Rows(np.zeros((0, instant.size)), np.zeros(0), np.zeros(0))
+    return Rows(np.zeros((0, 0)), np.zeros(0), np.zeros(0), instant.forces)
 
 
 def _rotation_vector(rotation: Array) -> Array:
     """Axis times angle of a rotation matrix, (3,), rad, for angles below a half turn."""
-    skew = 0.5 * np.array(
-        [
-            rotation[2, 1] - rotation[1, 2],
-            rotation[0, 2] - rotation[2, 0],
-            rotation[1, 0] - rotation[0, 1],
-        ]
-    )
-    sine = float(np.linalg.norm(skew))
-    cosine = 0.5 * (rotation[0, 0] + rotation[1, 1] + rotation[2, 2] - 1.0)
-    return skew if sine < 1e-9 else skew * (np.arctan2(sine, cosine) / sine)
+    # Plain floats: nine numbers are not worth an array's overhead, 500 times a second.
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = rotation.tolist()
+    axis = (0.5 * (zy - yz), 0.5 * (xz - zx), 0.5 * (yx - xy))
+    sine = math.hypot(*axis)
+    angle = math.atan2(sine, 0.5 * (xx + yy + zz - 1.0))
+    scale = 1.0 if sine < 1e-9 else angle / sine
+    return np.array([scale * a for a in axis])

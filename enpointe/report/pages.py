@@ -43,6 +43,7 @@ from enpointe.report.ground import margin_chart, support_chart
 from enpointe.report.joints import joint_chart, joint_rows
 from enpointe.report.movements import Movement, danced_tempo, movements
 from enpointe.report.pictures import jpeg
+from enpointe.report.promises import promises_sections
 from enpointe.report.wrists import MOVEMENTS_MAX, LineStyle, Series, wrist_chart
 
 __all__ = ["Material", "comparison_page", "performance_page", "poses_page"]
@@ -107,8 +108,9 @@ def performance_page(performance: Performance, material: Material) -> Page:
         )
         for side, colour, line in sides
     ]
+    figures = performance.summary()
     sections = [
-        Section("figures", "Figures", (words.figure_table(performance, performance.summary()),)),
+        Section("figures", "Figures", (words.figure_table(performance, figures),)),
         _score_section(
             choreography.score, material, tuple(choreography.key_times), choreography.tempo
         ),
@@ -116,6 +118,7 @@ def performance_page(performance: Performance, material: Material) -> Page:
         _poses_section(choreography.score, choreography.key_poses, material),
         _wrist_section(ways, series, performance.effort),
         Section("effort", "Effort asked, and what came out", (_effort_table(performance),)),
+        *promises_sections(figures),
         *_physics_sections(performance),
         *rules_sections(performance.rules),
         _certificate_section(choreography.key_poses),

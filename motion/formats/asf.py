@@ -121,6 +121,8 @@ class _Reader:
         name = ""
         for line, content in enumerate(text.split("\n"), start=1):
             stripped = content.strip()
+            if stripped.startswith("#"):
+                self.lost[:] = ["comments"]
             if not stripped or stripped.startswith("#"):
                 continue
             self.last = line

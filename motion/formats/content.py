@@ -9,11 +9,12 @@ from typing import Literal
 
 from enpointe.motion.formats.markers import MarkerMotion
 from enpointe.motion.formats.skeleton import SkeletonMotion
+from enpointe.motion.gesture.scene import Scene
 
 __all__ = ["Content", "Format", "Kind", "Payload"]
 
-Payload = SkeletonMotion | MarkerMotion
-Kind = Literal["skeleton", "markers"]
+Payload = SkeletonMotion | MarkerMotion | Scene
+Kind = Literal["skeleton", "markers", "scene"]
 
 
 @dataclass(frozen=True)

@@ -34,6 +34,7 @@ from enpointe.motion.formats.markers import Label, MarkerMotion
 from enpointe.motion.formats.skeleton import CHANNELS, Joint, Skeleton, SkeletonMotion
 from enpointe.motion.formats.space import DEGREES, Space
 from enpointe.motion.formats.text import decoded, read_raw
+from enpointe.motion.gesture.scene import Scene
 
 __all__ = ["CSV_JOINTS", "CSV_MARKERS", "read_csv", "write_csv"]
 
@@ -82,8 +83,10 @@ def write_csv(payload: Payload, path: Path) -> tuple[str, ...]:
         What a table can't hold.
 
     Raises:
-        FormatError: No frames, or a unit that has no name.
+        FormatError: A scene, no frames, or a unit that has no name.
     """
+    if isinstance(payload, Scene):
+        raise FormatError("CSV holds markers or joints, and this is a scene", path)
     space = payload.space if isinstance(payload, MarkerMotion) else payload.skeleton.space
     unit = unit_name(space.metres_per_unit)
     if unit is None:

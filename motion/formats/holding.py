@@ -18,10 +18,10 @@ def markers_of(payload: Payload, path: Path, format_name: str) -> MarkerMotion:
     """The movement as markers.
 
     Raises:
-        FormatError: It is a skeleton's, or has no frame or no marker.
+        FormatError: It is a skeleton's or a scene, or has no frame or no marker.
     """
     if not isinstance(payload, MarkerMotion):
-        raise FormatError(f"{format_name} holds markers, and this is a skeleton", path)
+        raise FormatError(f"{format_name} holds markers, and this is not a set of them", path)
     if not payload.frames or not payload.names:
         raise FormatError(f"{format_name} needs one frame and one marker at least", path)
     return payload

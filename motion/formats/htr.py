@@ -94,6 +94,7 @@ class _Reader:
     def __init__(self, path: Path, lines: list[str]) -> None:
         self.path = path
         self.lines = [line.split("#", 1)[0].strip() for line in lines]
+        self.lost = ("comments",) if any("#" in line for line in lines) else ()
         self.sections = self.split()
         self.warnings: list[str] = []
 
@@ -141,7 +142,7 @@ class _Reader:
         rate = self.rate(header)
         skeleton = Skeleton(joints, space, positions_replace_offset=False)
         motion = SkeletonMotion(skeleton, rate, values, start=start, notes=notes)
-        return Content(motion, tuple(self.warnings))
+        return Content(motion, tuple(self.warnings), self.lost)
 
     def header(self) -> dict[str, tuple[str, str, int]]:
         """Name as written, value and line of each setting, by its name in small letters."""

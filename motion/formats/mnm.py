@@ -14,7 +14,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from enpointe.errors import FormatError
-from enpointe.motion.formats.content import Payload
+from enpointe.motion.formats.markers import MarkerMotion
 from enpointe.motion.formats.skeleton import SkeletonMotion
 from enpointe.motion.formats.text import read_text, refuse_merge_marks
 from enpointe.motion.formats.writing import write_lines
@@ -79,7 +79,9 @@ def write_names(names: dict[str, str], path: str | Path) -> None:
     write_lines(path, (f"{first} = {second}" for first, second in names.items()))
 
 
-def renamed(payload: Payload, names: dict[str, str]) -> tuple[Payload, tuple[str, ...]]:
+def renamed(
+    payload: SkeletonMotion | MarkerMotion, names: dict[str, str]
+) -> tuple[SkeletonMotion | MarkerMotion, tuple[str, ...]]:
     """A movement whose joints or markers go by other names.
 
     Args:

@@ -14,11 +14,14 @@ from enpointe.motion.formats.brd import BRD
 from enpointe.motion.formats.bva import BVA
 from enpointe.motion.formats.bvh import BVH
 from enpointe.motion.formats.c3d import C3D
-from enpointe.motion.formats.content import Content, Format, Payload
+from enpointe.motion.formats.content import Content, Format, Kind, Payload
 from enpointe.motion.formats.csm import CSM
 from enpointe.motion.formats.csv_table import CSV_JOINTS, CSV_MARKERS
+from enpointe.motion.formats.gst import GST
 from enpointe.motion.formats.htr import GTR, HTR
+from enpointe.motion.formats.skeleton import SkeletonMotion
 from enpointe.motion.formats.trc import TRC
+from enpointe.motion.gesture.scene import Scene
 
 __all__ = ["FORMATS", "formats", "read", "sniffed", "write"]
 
@@ -33,6 +36,7 @@ FORMATS: tuple[Format, ...] = (
     BVA,
     HTR,
     GTR,
+    GST,
     C3D,
     TRC,
     CSM,
@@ -91,7 +95,7 @@ def write(payload: Payload, path: str | Path) -> tuple[str, ...]:
     """Writes a movement in the format that the ending of `path` names.
 
     Args:
-        payload: A skeleton's movement or a marker set's.
+        payload: A skeleton's movement, a marker set's or a gesture scene.
         path: Where to.
 
     Returns:
@@ -109,8 +113,15 @@ def write(payload: Payload, path: str | Path) -> tuple[str, ...]:
             sorted({suffix for each in FORMATS if each.write for suffix in each.suffixes})
         )
         raise EnpointeError(f"{path}: no motion format to write ends in {ending!r}; these: {known}")
-    kind = "skeleton" if hasattr(payload, "skeleton") else "markers"
-    fitting = [each for each in named if each.kind == kind]
+    kind = _kind(payload)
+    # A scene has room for joints and markers too.
+    fitting = [each for each in named if each.kind in (kind, "scene")]
     if not fitting or fitting[0].write is None:
         raise EnpointeError(f"{path}: {named[0].name} holds {named[0].kind}, and this is {kind}")
     return fitting[0].write(payload, path)
+
+
+def _kind(payload: Payload) -> Kind:
+    if isinstance(payload, Scene):
+        return "scene"
+    return "skeleton" if isinstance(payload, SkeletonMotion) else "markers"

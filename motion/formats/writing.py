@@ -39,10 +39,10 @@ def skeleton_of(payload: Payload, path: Path, name: str) -> SkeletonMotion:
     """The payload where it is a skeleton's movement with at least one frame.
 
     Raises:
-        FormatError: It is a set of markers, or has no frame.
+        FormatError: It is a set of markers or a scene, or has no frame.
     """
     if not isinstance(payload, SkeletonMotion):
-        raise FormatError(f"{name} holds a skeleton's movement, and these are markers", path)
+        raise FormatError(f"{name} holds a skeleton's movement, and this is none", path)
     if not payload.frames:
         raise FormatError("there is no frame to write", path)
     return payload

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from itertools import groupby
 
 import mujoco
 import numpy as np
@@ -11,15 +12,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from enpointe.controllers import WholeBody, perform
+from enpointe.controllers import Recording, WholeBody, perform
 from enpointe.models import dancer_model
 from enpointe.models.foot_positions import support_hull
 from enpointe.motion import Motion
+from enpointe.motion.arrival import danced_tempo
 from enpointe.motion.contact_schedule import ON_FLOOR, SHORTEST, ContactSchedule, contact_schedule
 from enpointe.motion.danceable import Danceable, make_danceable
 from enpointe.motion.weight_plan import PLAN_RATE, WeightPlan, plan_weight
 from enpointe.sim.balance import margin
 from enpointe.sim.body import SimulatedBody
+from enpointe.sim.feet import FootState, foot_states
 from enpointe.sim.measures import measure
 
 from .floor import dance
@@ -169,18 +172,38 @@ def test_joints_stay_in_their_ranges(score: str) -> None:
     assert np.all(made.qpos[:, 7:] <= high + np.radians(3.0))
 
 
+@cache
+def performed(score: str) -> tuple[Recording, int]:
+    """Danced on a free root, and how often the programme had no solution."""
+    reference = danceable(score).motion
+    controller = WholeBody(reference)
+    recording = perform(reference, controller, SimulatedBody.at_start_of(reference))
+    return recording, controller.workload.failures
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("score", MOVING)
+@pytest.mark.parametrize("score", [*MOVING, "releve"])
 def test_it_is_danced_under_gravity(score: str) -> None:
     """On one leg and on two, on a free root, with the strength that a dancer has."""
-    reference = danceable(score).motion
-    body = SimulatedBody.at_start_of(reference)
-    controller = WholeBody(reference)
-    measures = measure(perform(reference, controller, body))
+    recording, failures = performed(score)
+    measures = measure(recording)
     assert measures.fell_at is None
     assert measures.root_force_max == 0.0
     assert measures.other_contact_max == 0.0
-    assert controller.workload.failures == 0
+    assert failures == 0
     assert measures.tracking_rms_deg < 1.0
     assert measures.slip_max < 0.010
     assert measures.torque_limit_fraction_max <= 1.0 + 1e-9
+
+
+@pytest.mark.slow
+def test_eight_releves_rise_and_come_down_in_time() -> None:
+    """Both heels leave the floor eight times, the balls of the feet never, and beats are kept."""
+    recording, _ = performed("releve")
+    forces = np.asarray(recording.channels["sole_force"])[::5]
+    states = [foot_states(MODEL, force) for force in forces]
+    for side in ("left", "right"):
+        seen = [key for key, _ in groupby(state[side] for state in states)]
+        assert set(seen) == {FootState.FLAT, FootState.DEMI_POINTE}
+        assert seen.count(FootState.DEMI_POINTE) == 8
+    assert danced_tempo(recording.as_motion(), recording.reference)[1] < 0.04

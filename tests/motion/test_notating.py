@@ -35,7 +35,8 @@ from .captured import captured
 from .dancing import choreography, motion, solved, solver, written_score
 
 PORTS_DE_BRAS = ("first-port-de-bras", "third-port-de-bras", "fourth-port-de-bras")
-WITHOUT_JUMPS = ("adage-developpe", "temps-lie-grand-battement", "evaluation-poses")
+STEPS = ("releve", "releve-one-foot", "plie-releve", "fondu")
+WITHOUT_JUMPS = ("adage-developpe", "temps-lie-grand-battement", "evaluation-poses", *STEPS)
 
 
 WITH_JUMPS = {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import pairwise
 
 import pytest
 
@@ -22,6 +23,7 @@ EXERCISES = (
     "grand-jete-en-tournant",
     "glissade-jete-assemble",
 )
+STEPS = ("releve", "releve-one-foot", "plie-releve", "fondu")
 
 
 def at(name: str, beat: Fraction | int) -> ResolvedFrame:
@@ -37,8 +39,9 @@ def named(frame: ResolvedFrame, side: Side) -> tuple[str, str, float | None]:
 
 
 def test_all_are_shipped() -> None:
-    """The six exercises, the first port de bras and the evaluation poses."""
-    assert set(shipped_scores()) == {*EXERCISES, "first-port-de-bras", "evaluation-poses"}
+    """The six exercises, the first port de bras, four steps and the evaluation poses."""
+    others = {"first-port-de-bras", "evaluation-poses"}
+    assert set(shipped_scores()) == {*EXERCISES, *STEPS, *others}
 
 
 @pytest.mark.parametrize("name", shipped_scores())
@@ -95,6 +98,66 @@ def test_adage() -> None:
     floors = {leg.support.floor for leg in at(name, 5).legs.values() if leg.support}
     assert floors == {FloorContact.DEMI_POINTE}
     assert named(at(name, 6), Side.LEFT) == ("cou-de-pied", "derrière", None)
+
+
+def risen(frame: ResolvedFrame) -> set[Side]:
+    """The feet that stand on demi-pointe."""
+    return {
+        side
+        for side, leg in frame.legs.items()
+        if leg.support and leg.support.floor is FloorContact.DEMI_POINTE
+    }
+
+
+def bent(frame: ResolvedFrame) -> set[Side]:
+    """The legs that stand in demi-plié."""
+    return {
+        side
+        for side, leg in frame.legs.items()
+        if leg.support and leg.bears and leg.support.bend == "demi-plié"
+    }
+
+
+@pytest.mark.parametrize(
+    ("name", "feet"), [("releve", set(Side)), ("releve-one-foot", {Side.LEFT})]
+)
+def test_eight_releves_in_a_row(name: str, feet: set[Side]) -> None:
+    """Up and down on every other count, nothing in between, ending on two flat feet."""
+    frames = load_score(name).performed().resolved()
+    up = [frame.beat for frame in frames if risen(frame)]
+    assert len(up) == 8
+    assert {later - earlier for earlier, later in pairwise(up)} == {2}
+    assert all(risen(frame) == feet for frame in frames if frame.beat in up)
+    assert all(
+        frame.beat + 1 in up
+        for frame in frames
+        if not risen(frame) and frame.beat < up[-1] and frame.beat > up[0]
+    )
+    assert not risen(frames[-1])
+    assert all(leg.bears for leg in frames[-1].legs.values())
+
+
+def test_plie_releve() -> None:
+    """Each relevé comes straight out of a demi-plié of both legs, in first and in second."""
+    frames = load_score("plie-releve").performed().resolved()
+    rises = [(before, after) for before, after in pairwise(frames) if risen(after)]
+    assert [frame.feet.name for _, frame in rises if frame.feet] == ["first"] * 2 + ["second"] * 2
+    for before, after in rises:
+        assert bent(before) == risen(after) == set(Side)
+        assert not bent(after)
+
+
+def test_fondu() -> None:
+    """The supporting knee bends with the other foot at the ankle; both stretch, to 45 degrees."""
+    frames = load_score("fondu").performed().resolved()
+    for standing, moving in ((Side.LEFT, Side.RIGHT), (Side.RIGHT, Side.LEFT)):
+        ways = [
+            (named(before, moving)[0], named(after, moving))
+            for before, after in pairwise(frames)
+            if bent(before) == {standing} and not bent(after)
+        ]
+        expected = [("raised", way, 45) for way in ("devant", "seconde", "derrière")]
+        assert ways == [("cou-de-pied", each) for each in expected]
 
 
 def test_grand_jete_en_tournant() -> None:

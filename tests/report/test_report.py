@@ -107,6 +107,7 @@ def test_sections_of_a_physical_performance(reports: dict[str, ReportFiles]) -> 
         "poses",
         "wrists",
         "effort",
+        "promises",
         "balance",
         "joints",
         "rules",

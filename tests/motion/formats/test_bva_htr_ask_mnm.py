@@ -83,6 +83,7 @@ def test_htr_adds_to_its_base(tmp_path: Path) -> None:
     """Place: base and frame in the parent's frame. Rotation: base @ Rz Ry Rx of the frame."""
     found, motion = content(tmp_path, "a.htr", HTR_DOCUMENT)
     assert found.warnings == ()
+    assert found.lost == ("comments",)
     assert motion.start == 1
     assert motion.skeleton.space.metres_per_unit == 0.001
     world, turns = motion.world()
