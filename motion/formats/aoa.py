@@ -8,16 +8,14 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-import numpy as np
-
 from enpointe.errors import FormatError
 from enpointe.files import write_text
-from enpointe.motion.formats.columns import column_table, gap_warnings, number_text
+from enpointe.motion.formats.columns import column_table, number_text, settle_gaps
 from enpointe.motion.formats.content import Content, Format, Payload
 from enpointe.motion.formats.guessing import guessed_space
 from enpointe.motion.formats.holding import left_out, lost_notes, markers_of
 from enpointe.motion.formats.markers import MarkerMotion
-from enpointe.motion.formats.text import finite_number, read_text, whole_number
+from enpointe.motion.formats.text import CUT, finite_number, read_text, whole_number
 
 __all__ = ["AOA", "read_aoa", "write_aoa"]
 
@@ -47,19 +45,21 @@ def read_aoa(path: Path) -> Content:
     comment = lines[0].strip()
     points = column_table(lines[2:], 3, path, 3, "a marker")
     last = len(lines)
+    cut = bool(lines[-1].strip())
     del lines
     whole, rest = divmod(len(points), markers)
     if not whole:
         raise FormatError(f"{len(points)} rows are no frame of {markers} markers", path, line=last)
     warnings: list[str] = []
     lost: list[str] = []
+    if cut:
+        warnings.append(CUT)
     if whole != declared or rest:
         warnings.append(f"frames says {declared}, and there are {whole} whole ones")
     if rest:
         lost.append(f"{rest} markers of a frame that breaks off")
     positions = points[: whole * markers].reshape(whole, markers, 3)
-    warnings += gap_warnings([], 0, None, positions)
-    positions[~np.isfinite(positions).all(axis=2)] = np.nan
+    warnings += settle_gaps(positions)
     space, guesses = guessed_space(positions, "y", None, usual_metres=0.01)
     names = tuple(str(index) for index in range(1, markers + 1))
     notes = {_COMMENT: comment} if comment else {}

@@ -19,7 +19,7 @@ from enpointe.motion.formats.content import Content, Format, Payload
 from enpointe.motion.formats.guessing import guessed_space
 from enpointe.motion.formats.holding import left_out, lost_notes, markers_of
 from enpointe.motion.formats.markers import MarkerMotion
-from enpointe.motion.formats.text import read_text
+from enpointe.motion.formats.text import CUT, read_text
 
 __all__ = ["BRD", "read_brd", "write_brd"]
 
@@ -40,6 +40,7 @@ def read_brd(path: Path) -> Content:
     """
     lines = read_text(path).split("\n")
     table, timed = _rows(lines, path)
+    cut = bool(lines[-1].strip())
     del lines
     samples, rows = np.unique(table[:, 0], return_inverse=True)
     markers, columns = np.unique(table[:, 1], return_inverse=True)
@@ -60,6 +61,8 @@ def read_brd(path: Path) -> Content:
     orientations[rows, columns] = table[:, 5:9]
     warnings: list[str] = []
     lost: list[str] = []
+    if cut:
+        warnings.append(CUT)
     if (np.diff(samples) != 1).any():
         warnings.append("sample numbers do not count up by one; the samples are taken in order")
     times = table[:, 9] + table[:, 10] * 1e-6 if timed else None

@@ -81,6 +81,8 @@ def _read(file: BinaryIO, path: Path) -> Content:
     frames = read_frames(file, layout, encoding)
     if frames.discarded:
         lost.append(f"coordinates of {frames.discarded} points that are marked as not valid")
+    if parameters.described:
+        lost.append(f"descriptions of {parameters.described} parameters and groups")
     if any(name.startswith("ROTATION:") for name in parameters.values):
         lost.append("rotations of the ROTATION group")
     motion = _motion(header, parameters, encoding, layout, rate, frames, warnings)
@@ -212,7 +214,7 @@ def _motion(
 ) -> MarkerMotion:
     start = parameters.whole("TRIAL:ACTUAL_START_FIELD")
     labels = parameters.strings("POINT:LABELS")[: layout.points]
-    measured = bool(np.nan_to_num(frames.residuals).any() or frames.cameras.any())
+    measured = bool((frames.residuals > 0).any() or frames.cameras.any())
     return MarkerMotion(
         _names(labels, layout.points, "marker"),
         rate,

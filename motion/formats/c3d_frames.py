@@ -12,7 +12,7 @@ from enpointe.motion.formats.c3d_parameters import Encoding
 
 __all__ = ["Frames", "Layout", "read_frames"]
 
-_PIECE = 1 << 20
+_PIECE = 1 << 18
 
 
 @dataclass(frozen=True, slots=True)

@@ -97,10 +97,11 @@ class Header:
 
 @dataclass(frozen=True, slots=True)
 class Parameters:
-    """All parameters by "GROUP:NAME", and what was doubtful."""
+    """All parameters by "GROUP:NAME", what was doubtful, and how many have a description."""
 
     values: Mapping[str, Value]
     warnings: tuple[str, ...]
+    described: int
 
     def whole(self, name: str) -> int | None:
         """An unsigned number, of 32 bits where two words make it; None where there is none."""
@@ -193,6 +194,7 @@ def read_parameters(section: bytes, start: int, path: Path, encoding: Encoding) 
     groups: dict[int, str] = {}
     found: list[tuple[int, str, Value]] = []
     warnings: list[str] = []
+    described = 0
     at = 4
     while at + 2 <= len(section):
         length, group = struct.unpack_from("2b", section, at)
@@ -206,6 +208,7 @@ def read_parameters(section: bytes, start: int, path: Path, encoding: Encoding) 
         name = _text(section[at + 2 : pointer]).upper()
         step = struct.unpack_from(f"{encoding.order}H", section, pointer)[0]
         body = section[pointer + 2 : pointer + step if step else len(section)]
+        described += _is_described(body, group)
         if group < 0:
             groups.setdefault(-group, name)
         else:
@@ -220,7 +223,17 @@ def read_parameters(section: bytes, start: int, path: Path, encoding: Encoding) 
     values: dict[str, Value] = {}
     for group, name, value in found:
         values.setdefault(f"{groups.get(group, f'GROUP{group}')}:{name}", value)
-    return Parameters(values, tuple(warnings))
+    return Parameters(values, tuple(warnings), described)
+
+
+def _is_described(body: bytes, group: int) -> bool:
+    """Whether words stand behind a group's name or a parameter's data."""
+    at = 0
+    if group > 0 and len(body) > 1:
+        dimensions = body[2 : 2 + body[1]]
+        size = abs(struct.unpack_from("b", body)[0]) * prod(dimensions)
+        at = 2 + body[1] + size
+    return at < len(body) and bool(_text(body[at + 1 : at + 1 + body[at]]))
 
 
 def _value(body: bytes, encoding: Encoding) -> Value | None:

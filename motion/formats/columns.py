@@ -4,14 +4,25 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from enpointe.errors import FormatError
+from enpointe.motion.formats.fields import Fields, fields_table
+from enpointe.motion.formats.text import CUT, decoded
 
-__all__ = ["MISSING", "MOST_MARKERS", "column_table", "gap_warnings", "number_text"]
+__all__ = [
+    "MISSING",
+    "MOST_MARKERS",
+    "column_table",
+    "delimited_rows",
+    "number_text",
+    "plain_lines",
+    "settle_gaps",
+]
 
 Array = NDArray[np.float64]
 MOST_MARKERS = 100_000
@@ -57,25 +68,90 @@ def column_table(
     return _slow_table(lines, width, path, first_line, what, delimiter, needed)
 
 
-def gap_warnings(lines: list[str], width: int, delimiter: str | None, points: Array) -> list[str]:
-    """What is doubtful about gaps: rows that end early, and points that lack a coordinate.
+def delimited_rows(
+    data: bytes,
+    skipped: int,
+    width: int,
+    delimiter: str | None,
+    path: Path,
+    what: str,
+    *,
+    needed: int,
+) -> Fields:
+    """The rows below a head, quickly where they are well made.
+
+    Words beyond the width are left out and counted where a character parts the columns.
 
     Args:
-        lines: The text of the rows.
-        width: Columns in a row.
+        data: The file, as `plain_lines` gives it.
+        skipped: Lines of the head.
+        width: Columns.
         delimiter: Between columns; None for any blanks.
-        points: (T, M, 3), as read.
+        path: The file, for messages.
+        what: What a row is, for messages.
+        needed: Columns at the start that every row has to have.
+
+    Raises:
+        FormatError: With the line.
+    """
+    data, warnings = _whole_lines(data, width, delimiter)
+    start = 0
+    for _ in range(skipped):
+        newline = data.find(b"\n", start)
+        start = newline + 1 if newline >= 0 else len(data)
+    if delimiter is not None:
+        found = fields_table(data, start, width, delimiter, needed)
+        if found is not None:
+            return replace(found, warnings=warnings)
+    lines = decoded(data[start:]).split("\n")
+    longer, shorter = 0, 0
+    if delimiter is not None:
+        for index, line in enumerate(lines):
+            if line.count(delimiter) >= width:
+                parts = line.split(delimiter, width)
+                lines[index] = delimiter.join(parts[:-1])
+                longer += bool(parts[-1].strip())
+        shorter = sum(line.count(delimiter) < width - 1 for line in lines if line.strip())
+    table = column_table(lines, width, path, skipped + 1, what, delimiter=delimiter, needed=needed)
+    return Fields(table, longer, shorter, warnings)
+
+
+def _whole_lines(data: bytes, width: int, delimiter: str | None) -> tuple[bytes, tuple[str, ...]]:
+    """The file without a last line that breaks off, and what is doubtful about its end."""
+    if data.endswith(b"\n") or not data.rstrip():
+        return data, ()
+    last = data.rfind(b"\n") + 1
+    line = data[last:].strip(b" ")
+    columns = line.count(delimiter.encode()) + 1 if delimiter else len(line.split())
+    if not line or columns >= width:
+        return data, (CUT,) if line else ()
+    return data[:last], ("the last row is cut short and left out",)
+
+
+def plain_lines(raw: bytes) -> bytes:
+    r"""Bytes of a text file with \n at the end of each line and no byte order mark."""
+    raw = raw.removeprefix(b"\xef\xbb\xbf")
+    return raw.replace(b"\r\n", b"\n").replace(b"\r", b"\n") if b"\r" in raw else raw
+
+
+def settle_gaps(points: Array, shorter: int = 0) -> list[str]:
+    """Makes points that lack a coordinate unseen, and says what is doubtful about gaps.
+
+    Args:
+        points: (T, M, 3), as read; changed in place.
+        shorter: Rows that end early.
     """
     found = []
-    ending = 0
-    if delimiter is not None:
-        ending = sum(line.count(delimiter) < width - 1 for line in lines if line.strip())
-    if ending:
-        found.append(f"{ending} rows end early; what they lack is taken as not seen")
-    finite = np.isfinite(points)
-    partly = int((finite.any(axis=2) & ~finite.all(axis=2)).sum())
+    if shorter:
+        found.append(f"{shorter} rows end early; what they lack is taken as not seen")
+    known = np.isfinite(points)
+    if known.all():
+        return found
+    lacking = ~known.all(axis=2)
+    partly = int((known.any(axis=2) & lacking).sum())
     if partly:
         found.append(f"{partly} points lack a coordinate and are taken as not seen")
+    points[lacking] = np.nan
     return found
 
 

@@ -17,14 +17,23 @@ from enpointe.files import write_text
 from enpointe.motion.formats.columns import (
     MOST_MARKERS,
     column_table,
-    gap_warnings,
     number_text,
+    plain_lines,
+    settle_gaps,
 )
 from enpointe.motion.formats.content import Content, Format, Payload
+from enpointe.motion.formats.fields import even_table
 from enpointe.motion.formats.guessing import guessed_space
 from enpointe.motion.formats.holding import left_out, markers_of, plain_names
 from enpointe.motion.formats.markers import MarkerMotion
-from enpointe.motion.formats.text import finite_number, read_text, whole_number
+from enpointe.motion.formats.text import (
+    CUT,
+    decoded,
+    finite_number,
+    number_block,
+    read_raw,
+    whole_number,
+)
 
 __all__ = ["CSM", "read_csm", "write_csm"]
 
@@ -32,7 +41,9 @@ _NAME = re.compile(r"[A-Za-z]+")
 _KEY = re.compile(r"\$([A-Za-z]+)[ \t]*(.*)")
 _USUAL_RATE = 30.0
 _TOLD = frozenset({"firstframe", "lastframe", "rate", "order", "points"})
-_DROPOUT = re.compile(r"\bdropout\b", re.IGNORECASE)
+_DROPOUT = re.compile(rb"\bdropout\b", re.IGNORECASE)
+_GAP = re.compile(rb"dropout|nan", re.IGNORECASE)
+_POINTS = re.compile(rb"^[ \t]*\$points[^\n]*\n?", re.IGNORECASE | re.MULTILINE)
 
 
 def read_csm(path: Path) -> Content:
@@ -41,30 +52,27 @@ def read_csm(path: Path) -> Content:
     Raises:
         FormatError: No CSM file, or one with a row that does not fit its markers.
     """
-    lines = read_text(path).split("\n")
-    sections, at = _sections(lines, path)
+    raw = plain_lines(read_raw(path))
+    points = _POINTS.search(raw)
+    head = decoded(raw[: points.end()] if points else raw).split("\n")
+    sections, at = _sections(head, path)
     order = " ".join(sections.get("order", (0, []))[1])
     if len(order) > 40 * MOST_MARKERS:
         raise FormatError(f"more than {MOST_MARKERS} markers", path, line=at)
     names = tuple(order.split())
     if not names:
         raise FormatError("no markers after $Order", path, line=at)
-    rows = lines[at:]
-    del lines
-    if any("D" in row or "d" in row for row in rows):
-        rows = [_DROPOUT.sub("nan nan nan", row) for row in rows]
-    width = 1 + 3 * len(names)
-    table = column_table(rows, width, path, at + 1, "a frame", needed=1)
-    del rows
+    table = _table(raw, at, 1 + 3 * len(names), path)
     if not len(table):
         raise FormatError("no points after $Points", path, line=at)
     rate, warnings = _rate(sections, path)
+    if not raw.endswith(b"\n"):
+        warnings.append(CUT)
     warnings += _doubts(sections, table[:, 0], path)
     if not table[0, 0].is_integer() or abs(table[0, 0]) > 1e9:
         raise FormatError("a frame's number must be whole", path, line=at + 1)
     positions = table[:, 1:].reshape(len(table), len(names), 3)
-    warnings += gap_warnings([], 0, None, positions)
-    positions[~np.isfinite(positions).all(axis=2)] = np.nan
+    warnings += settle_gaps(positions)
     space, guesses = guessed_space(positions, "z", None)
     kept = {key: _said(said) for key, (_, said) in sections.items() if key not in _TOLD}
     notes = {key: value for key, value in kept.items() if value}
@@ -138,6 +146,20 @@ def _sections(lines: list[str], path: Path) -> tuple[dict[str, tuple[int, list[s
         said = [key[2].strip()]
         found[name] = (number, said)
     raise FormatError("there is no $Points", path, line=len(lines))
+
+
+def _table(raw: bytes, skipped: int, width: int, path: Path) -> NDArray[np.float64]:
+    """The rows, with three gaps for each dropout."""
+    start = 0
+    for _ in range(skipped):
+        start = raw.find(b"\n", start) + 1 or len(raw)
+    table = even_table(raw, start, width, None)
+    if table is not None and np.isfinite(table).all():
+        return table
+    if not _GAP.search(raw, start):
+        return number_block(raw, width, path, skipped + 1, "a frame", start)
+    rows = decoded(_DROPOUT.sub(b" nan nan nan ", raw[start:])).split("\n")
+    return column_table(rows, width, path, skipped + 1, "a frame", needed=1)
 
 
 def _rate(sections: dict[str, tuple[int, list[str]]], path: Path) -> tuple[float, list[str]]:

@@ -12,6 +12,7 @@ import io
 import json
 import re
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Literal, cast
 
@@ -22,9 +23,10 @@ from enpointe.errors import FormatError, MotionError
 from enpointe.files import write_text
 from enpointe.motion.formats.columns import (
     MOST_MARKERS,
-    column_table,
-    gap_warnings,
+    delimited_rows,
     number_text,
+    plain_lines,
+    settle_gaps,
 )
 from enpointe.motion.formats.content import Content, Format, Payload
 from enpointe.motion.formats.guessing import UNITS, guessed_space, unit_name
@@ -32,7 +34,7 @@ from enpointe.motion.formats.holding import left_out, markers_of
 from enpointe.motion.formats.markers import Label, MarkerMotion
 from enpointe.motion.formats.skeleton import CHANNELS, Joint, Skeleton, SkeletonMotion
 from enpointe.motion.formats.space import DEGREES, Space
-from enpointe.motion.formats.text import read_text
+from enpointe.motion.formats.text import decoded, read_raw
 from enpointe.motion.gesture.scene import Scene
 
 __all__ = ["CSV_JOINTS", "CSV_MARKERS", "read_csv", "write_csv"]
@@ -55,23 +57,22 @@ def read_csv(path: Path) -> Content:
     Raises:
         FormatError: Columns that can't be told, or a row that is none.
     """
-    lines = read_text(path).split("\n")
-    told = _told(lines, path)
-    at = next((i for i, line in enumerate(lines) if line.strip() and line[0] != "#"), None)
-    if at is None:
-        raise FormatError("there is no line of columns", path, line=len(lines))
-    columns = _columns(lines[at], path, at + 1)
-    rows = lines[at + 1 :]
-    del lines
-    width = len(columns) + 1
-    table = column_table(rows, width, path, at + 2, "a row", delimiter=",", needed=1)
+    raw = plain_lines(read_raw(path))
+    head, at = _head(raw, path)
+    told = _told(head, path)
+    columns = _columns(head[at], path, at + 1)
+    rows = delimited_rows(raw, at + 1, len(columns) + 1, ",", path, "a row", needed=1)
+    if rows.longer:
+        raise FormatError("some rows have more columns than there are names", path, line=at + 2)
+    table = rows.table
     if not len(table):
         raise FormatError("there are no rows", path, line=at + 1)
     rate, warnings = _rate(table[:, 0], told, path)
+    warnings += rows.warnings
     try:
         if any(column.channel in CHANNELS for column in columns):
             return _joints(columns, table, rate, told, warnings, path, at + 1)
-        return _markers(columns, table, rows, rate, told, warnings)
+        return _markers(columns, table, rows.shorter, rate, told, warnings)
     except MotionError as error:
         raise FormatError(str(error), path, line=at + 1) from None
 
@@ -123,6 +124,20 @@ class _Column:
     name: str
     channel: str
     unit: str
+
+
+def _head(raw: bytes, path: Path) -> tuple[list[str], int]:
+    """The lines down to that of the columns, and its place."""
+    lines: list[str] = []
+    start = 0
+    while start < len(raw):
+        end = raw.find(b"\n", start)
+        end = len(raw) if end < 0 else end
+        lines.append(decoded(raw[start:end]))
+        if lines[-1].strip() and not lines[-1].startswith("#"):
+            return lines, len(lines) - 1
+        start = end + 1
+    raise FormatError("there is no line of columns", path, line=max(len(lines), 1))
 
 
 def _told(lines: list[str], path: Path) -> dict[str, object]:
@@ -221,7 +236,7 @@ def _space(
 def _markers(
     columns: list[_Column],
     table: Array,
-    rows: list[str],
+    shorter: int,
     rate: float,
     told: dict[str, object],
     warnings: list[str],
@@ -244,8 +259,7 @@ def _markers(
                 residuals[:, index] = values
             elif channel == "cameras" and cameras is not None:
                 cameras[:, index] = np.clip(np.nan_to_num(values), 0, 255).astype(np.uint8)
-    warnings += gap_warnings(rows, len(columns) + 1, ",", positions)
-    positions[~np.isfinite(positions).all(axis=2)] = np.nan
+    warnings += settle_gaps(positions, shorter)
     strange = sorted({c.channel for c in columns} - {*_POINT, *_TURN, "residual", "cameras"})
     motion = MarkerMotion(
         tuple(name for name, _ in markers),
@@ -376,13 +390,9 @@ def _sniff(start: bytes, what: Literal["markers", "joints"]) -> bool:
     return joints if what == "joints" else not joints and re.search(r"\.x\b", columns) is not None
 
 
-def _sniff_joints(start: bytes) -> bool:
-    return _sniff(start, "joints")
-
-
-def _sniff_markers(start: bytes) -> bool:
-    return _sniff(start, "markers")
-
-
-CSV_MARKERS = Format("CSV", (".csv",), "markers", _sniff_markers, read_csv, write_csv)
-CSV_JOINTS = Format("CSV of joints", (".csv",), "skeleton", _sniff_joints, read_csv, write_csv)
+CSV_MARKERS = Format(
+    "CSV", (".csv",), "markers", partial(_sniff, what="markers"), read_csv, write_csv
+)
+CSV_JOINTS = Format(
+    "CSV of joints", (".csv",), "skeleton", partial(_sniff, what="joints"), read_csv, write_csv
+)

@@ -18,15 +18,16 @@ from enpointe.errors import FormatError
 from enpointe.files import write_text
 from enpointe.motion.formats.columns import (
     MOST_MARKERS,
-    column_table,
-    gap_warnings,
+    delimited_rows,
     number_text,
+    plain_lines,
+    settle_gaps,
 )
 from enpointe.motion.formats.content import Content, Format, Payload
 from enpointe.motion.formats.guessing import UNITS, guessed_space, unit_name
 from enpointe.motion.formats.holding import left_out, lost_notes, markers_of, plain_names
 from enpointe.motion.formats.markers import MarkerMotion
-from enpointe.motion.formats.text import finite_number, read_text
+from enpointe.motion.formats.text import decoded, finite_number, read_raw
 
 __all__ = ["TRC", "read_trc", "write_trc"]
 
@@ -55,29 +56,21 @@ def read_trc(path: Path) -> Content:
     Raises:
         FormatError: No TRC file, or one with a line that can't be told.
     """
-    lines = read_text(path).split("\n")
+    raw = plain_lines(read_raw(path))
+    lines = decoded(b"\n".join(raw.split(b"\n", _HEADER_WITHIN)[:_HEADER_WITHIN])).split("\n")
     head = _head(lines, path)
-    rows = lines[head.first_row :]
-    del lines
     warnings, lost = list(head.warnings), []
-    unnamed = _cut_unnamed(rows, head)
-    if unnamed:
-        lost.append(f"points without a name at the end of {unnamed} rows")
-    table = column_table(
-        rows,
-        head.width,
-        path,
-        head.first_row + 1,
-        "a frame",
-        delimiter=head.delimiter,
-        needed=2,
+    rows = delimited_rows(
+        raw, head.first_row, head.width, head.delimiter, path, "a frame", needed=2
     )
+    table = rows.table
+    if rows.longer:
+        lost.append(f"points without a name at the end of {rows.longer} rows")
     if not len(table):
         raise FormatError("there are no frames after the header", path, line=head.first_row)
     warnings += _doubts(table, head)
     positions = table[:, 2:].reshape(len(table), len(head.names), 3)
-    warnings += gap_warnings(rows, head.width, head.delimiter, positions)
-    positions[~np.isfinite(positions).all(axis=2)] = np.nan
+    warnings += [*rows.warnings, *settle_gaps(positions, rows.shorter)]
     space, guesses = guessed_space(positions, "y", head.metres)
     start = _start(table[0, 0], path, head.first_row + 1)
     notes = dict(head.notes)
@@ -202,19 +195,6 @@ def _notes(first: str, values: dict[str, str]) -> dict[str, str]:
     kept = ("CameraRate", "OrigDataRate", "OrigDataStartFrame", "OrigNumFrames")
     named |= {key: values[key] for key in kept if key in values}
     return {key: value for key, value in named.items() if value}
-
-
-def _cut_unnamed(rows: list[str], head: _Head) -> int:
-    """Cuts columns beyond the named markers off the rows; how many rows had any."""
-    if head.delimiter is None:
-        return 0
-    count = 0
-    for index, row in enumerate(rows):
-        if row.count("\t") >= head.width:
-            parts = row.split("\t", head.width)
-            rows[index] = "\t".join(parts[:-1])
-            count += bool(parts[-1].strip())
-    return count
 
 
 def _doubts(table: Array, head: _Head) -> list[str]:

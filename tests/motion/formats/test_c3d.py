@@ -94,7 +94,7 @@ def test_real_files_read_and_write_back(data_dir: Path, tmp_path: Path) -> None:
         content = read(path)
         motion = content.motion
         assert isinstance(motion, MarkerMotion)
-        assert content.lost == ()
+        assert all(line.startswith("descriptions of") for line in content.lost)
         assert write_c3d(motion, tmp_path / "again.c3d") == ()
         again = markers(tmp_path / "again.c3d")
         for part in ("positions", "residuals", "cameras"):

@@ -96,6 +96,15 @@ def test_nonsense_is_refused_with_its_line(tmp_path: Path, old: str, new: str, l
     assert caught.value.line == line
 
 
+def test_a_last_row_that_was_cut_is_left_out(tmp_path: Path) -> None:
+    content = read_trc(written(tmp_path, BODY[: BODY.index("1631.528")]))
+    assert content.motion.frames == 1
+    assert any("cut short" in warning for warning in content.warnings)
+    content = read_trc(written(tmp_path, BODY.rstrip().rsplit("\n", 1)[0]))
+    assert content.motion.frames == 1
+    assert any("may be cut" in warning for warning in content.warnings)
+
+
 def test_points_without_a_name_are_lost_and_told(tmp_path: Path) -> None:
     content = read_trc(written(tmp_path, BODY.replace("76.5239\n", "76.5239\t1\t2\t3\n")))
     assert content.lost == ("points without a name at the end of 1 rows",)
