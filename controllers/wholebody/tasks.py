@@ -63,8 +63,8 @@ class CentreOfMass:
     """
 
     name: ClassVar[str] = "centre of mass"
-    weight: float = 1000.0
-    capture_gain: float = 5.0
+    weight: float = 2000.0
+    capture_gain: float = 8.0
     stiffness: float = 300.0
     damping: float = 35.0
 
@@ -174,7 +174,7 @@ class Posture:
     """
 
     name: ClassVar[str] = "posture"
-    weight: float = 0.2
+    weight: float = 0.15
     stiffness: float = 400.0
     damping: float = 40.0
 

@@ -214,7 +214,7 @@ def _motion(
 ) -> MarkerMotion:
     start = parameters.whole("TRIAL:ACTUAL_START_FIELD")
     labels = parameters.strings("POINT:LABELS")[: layout.points]
-    measured = bool(np.nan_to_num(frames.residuals).any() or frames.cameras.any())
+    measured = bool((frames.residuals > 0).any() or frames.cameras.any())
     return MarkerMotion(
         _names(labels, layout.points, "marker"),
         rate,

@@ -12,6 +12,7 @@ import io
 import json
 import re
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Literal, cast
 
@@ -389,13 +390,9 @@ def _sniff(start: bytes, what: Literal["markers", "joints"]) -> bool:
     return joints if what == "joints" else not joints and re.search(r"\.x\b", columns) is not None
 
 
-def _sniff_joints(start: bytes) -> bool:
-    return _sniff(start, "joints")
-
-
-def _sniff_markers(start: bytes) -> bool:
-    return _sniff(start, "markers")
-
-
-CSV_MARKERS = Format("CSV", (".csv",), "markers", _sniff_markers, read_csv, write_csv)
-CSV_JOINTS = Format("CSV of joints", (".csv",), "skeleton", _sniff_joints, read_csv, write_csv)
+CSV_MARKERS = Format(
+    "CSV", (".csv",), "markers", partial(_sniff, what="markers"), read_csv, write_csv
+)
+CSV_JOINTS = Format(
+    "CSV of joints", (".csv",), "skeleton", partial(_sniff, what="joints"), read_csv, write_csv
+)
