@@ -21,7 +21,10 @@ __all__ = ["LENGTHS", "Conversion", "convert"]
 LENGTHS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254}
 """Units that lengths can be written in, m."""
 
-_USUAL_RATE = 60.0
+_USUAL_RATE, _USUAL_UNIT = 60.0, "mm"
+_NAME_UNITS = frozenset({"C3D", "TRC", "CSV", "CSV of joints"})
+"""Formats in which a length's unit has a name, as CMU's (inches / 0.45) has none."""
+
 _OWN_ENDINGS = {".npz": "npz", ".gltf": "gltf", ".glb": "gltf", ".xml": "keyframes"}
 
 
@@ -127,8 +130,7 @@ def convert(
         if names is not None:
             way.rename(names)
         writer = way.fit(writers, rate)
-        if unit is not None:
-            way.measure(unit)
+        way.measure(unit, writer)
     except MotionError as error:
         raise EnpointeError(f"{source}: {error}") from None
     way.lose(writer.write(way.movement, target))
@@ -209,17 +211,26 @@ class _Way:
             raise MotionError("a scene keeps the rates of its units; markers of it have one")
         self.movement = resampled(self.movement, rate)
 
-    def measure(self, unit: str) -> None:
+    def measure(self, unit: str | None, writer: _Writer) -> None:
+        """Puts lengths into a unit, where one is asked for or the format must have another."""
         from enpointe.motion.formats import MarkerMotion, SkeletonMotion
         from enpointe.motion.formats.as_markers import in_unit
+        from enpointe.motion.formats.guessing import unit_name
 
-        if unit not in LENGTHS:
+        if unit is not None and unit not in LENGTHS:
             raise EnpointeError(f"no unit of length is called {unit!r}; these: {' '.join(LENGTHS)}")
-        if isinstance(self.movement, SkeletonMotion | MarkerMotion):
+        if not isinstance(self.movement, SkeletonMotion | MarkerMotion):
+            if unit not in (None, "m"):
+                raise MotionError("the dancer's motions and scenes keep their own units")
+            return
+        moving = self.movement
+        space = moving.space if isinstance(moving, MarkerMotion) else moving.skeleton.space
+        if unit is None and writer.name in _NAME_UNITS and not unit_name(space.metres_per_unit):
+            unit = _USUAL_UNIT
+            self.warnings.append(f"{writer.name} has no unit of {space.metres_per_unit:g} m: in mm")
+        if unit is not None:
             self.movement, lost = in_unit(self.movement, LENGTHS[unit])
             self.lose(lost)
-        elif unit != "m":
-            raise MotionError("the dancer's motions and scenes keep their own units")
 
 
 def _refuse_a_score(source: Path) -> None:

@@ -335,6 +335,12 @@ def test_fields_of_a_check(phrase: Score) -> None:
     assert set(enpointe.check(phrase).summary()) == fields("check")
 
 
+def test_fields_of_a_conversion(tmp_path: Path) -> None:
+    source = tmp_path / "a.csv"
+    source.write_text("time [s],a.x [m],a.y [m],a.z [m]\n0,0,0,1\n0.1,0,0,1\n")
+    assert set(enpointe.convert(source, tmp_path / "a.trc").summary()) == fields("conversion")
+
+
 def test_fields_of_a_sweep() -> None:
     from enpointe.models import dancer_model
     from enpointe.sim.disturbance import Disturbances, Factors

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -153,6 +154,25 @@ def test_rates_units_and_names(home: Path, bvh: Path) -> None:
     assert found.skeleton.names == ("Pelvis", "Shin")
     assert found.values[0, 1] == 1000.0
     assert found.skeleton.space.metres_per_unit == 0.001
+
+
+@pytest.mark.parametrize("suffix", [".trc", ".c3d", ".csv"])
+def test_a_unit_without_a_name_becomes_millimetres(home: Path, suffix: str) -> None:
+    """CMU's unit is inches / 0.45, which these formats can't name."""
+    motion = leg()
+    metres = 0.0254 / 0.45
+    joints = [replace(j, offset=(0.0, 1.0, 0.0), ends=()) for j in motion.skeleton.joints]
+    strange = replace(motion, skeleton=Skeleton(tuple(joints), Space(metres)))
+    write(strange, home / "a.htr")
+    done = enpointe.convert("a.htr", f"a{suffix}")
+    assert any("in mm" in line for line in done.warnings)
+    found = read(f"a{suffix}").motion
+    if isinstance(found, MarkerMotion):
+        assert found.space.points(found.positions)[0, 1, 2] == pytest.approx(101 * metres)
+    else:
+        assert isinstance(found, SkeletonMotion)
+        # HTR adds the place to the offset, which a table does not hold.
+        assert found.values[0, 1] == pytest.approx(99 * metres / 0.001)
 
 
 def test_an_ending_can_be_overruled(bvh: Path) -> None:
