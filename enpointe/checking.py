@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from enpointe.notation import Score, load_score
 from enpointe.performing import perform
 from enpointe.preparing import Progress, silent
+from enpointe.stored import load_stored
 
 if TYPE_CHECKING:
     from enpointe.models import Anthropometry, Style
@@ -157,7 +158,7 @@ def check(
         ()
     """
     if isinstance(source, str | Path) and Path(source).suffix == ".npz":
-        motion = _stored(Path(source), dancer)
+        motion = load_stored(Path(source), dancer)
     elif isinstance(source, str | Path | Score):
         score = source if isinstance(source, Score) else load_score(source)
         motion = perform(
@@ -177,14 +178,3 @@ def check(
     found = check_motion(motion)
     progress("looking", 1, 1)
     return Check(motion.name, found)
-
-
-def _stored(path: Path, dancer: Anthropometry | None) -> Motion:
-    from enpointe.controllers import Recording
-    from enpointe.models.dancer import dancer_model
-    from enpointe.motion.npz import is_motion, load_motion
-
-    model = dancer_model(dancer, flesh=False)
-    if is_motion(path):
-        return load_motion(path, model)
-    return Recording.load(path, model).as_motion()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from dataclasses import asdict
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -14,6 +15,7 @@ import enpointe
 from enpointe.console import Console, rows
 from enpointe.errors import EnpointeError
 from enpointe.options import (
+    ConversionOptions,
     DancerOptions,
     Effort,
     Json,
@@ -237,6 +239,35 @@ def check(
     else:
         console.print(rows(found.lines()))
     return NO if found.faults else DONE
+
+
+@app.command()
+@unbundled
+def convert(
+    source: Annotated[
+        Path,
+        typer.Argument(
+            metavar="IN", help="A motion file of any format, or one that perform wrote (.npz)."
+        ),
+    ],
+    target: Annotated[Path, typer.Argument(metavar="OUT", help="Its ending names the format.")],
+    *,
+    conversion: ConversionOptions,
+    dancer: DancerOptions,
+    json: Json = False,
+    quiet: Quiet = False,
+    seed: Seed = 0,
+) -> int:
+    """Write a motion file in another format, and say what that can't hold."""
+    console = Console(json=json, quiet=quiet)
+    converted = enpointe.convert(
+        source, target, dancer=dancer.anthropometry(), **asdict(conversion)
+    )
+    if json:
+        console.print_json(converted.summary())
+    else:
+        console.print(rows(converted.lines()))
+    return DONE
 
 
 @app.command()
