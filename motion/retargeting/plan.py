@@ -14,7 +14,7 @@ from enpointe.models.anatomy import SIDES
 from enpointe.motion.averaging import averaged
 from enpointe.motion.retargeting.body import BALL, HEEL, NONE, TIP, Body, Foot
 from enpointe.motion.retargeting.floor import Steps
-from enpointe.motion.retargeting.holding import hysteresis, ramped, shifted
+from enpointe.motion.retargeting.holding import hysteresis, ramped, runs, shifted
 from enpointe.motion.retargeting.landmarks import SEGMENTS
 from enpointe.motion.retargeting.source import Source
 
@@ -24,9 +24,11 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 _FLAT, _RISEN = np.radians(8.0), np.radians(15.0)
 """A foot on the floor pitched by less than the first lies flat, until it is by the second."""
-_TURNING, _SPINNING = np.radians(20.0), np.radians(45.0)
+_TURNING, _SPINNING = np.radians(45.0), np.radians(120.0)
 """rad/s: a standing foot that turns slower than the first does not turn; that spins, above the
 second."""
+_ASTRAY = np.radians(20.0)
+"""A standing foot's heading is held unless it turns farther than this, however slowly."""
 _SETTLE = 0.1
 """s: how long a foot takes to lie as the floor has it, and to leave it."""
 _CHANGE = 0.06
@@ -122,14 +124,13 @@ def _planted(ankle: Array, steps: Steps, foot: Foot, source: Source) -> tuple[Fo
     yaw, pitch, flat = _bearing(steps, bears, rate)
     turn = _blended(steps.turn, _standing_turn(yaw, pitch), laid)
     pitch = -np.arcsin(np.clip(turn[:, 2, 0], -1.0, 1.0))
+    heeled, tipped = ((steps.kind == HEEL) & ~flat)[:, None], (steps.kind == TIP)[:, None]
     raised = laid * np.maximum(pitch, 0.0)
     ahead = np.stack([np.cos(yaw), np.sin(yaw), np.zeros_like(yaw)], axis=1)
     ball, heel, tip = _sole(turn, raised, foot)
     # Where the ball would be if the foot were laid down about the point that it touches with.
     mark = np.where(
-        (steps.kind == TIP)[:, None],
-        tip - foot.toes * ahead,
-        np.where((pitch < 0)[:, None], heel + foot.span * ahead, ball),
+        tipped, tip - foot.toes * ahead, np.where(heeled, heel + foot.span * ahead, ball)
     )
     lowest = np.min([point[:, 2] for point in (ball, heel, tip)], axis=0)
     still = steps.still & ~_changing(steps.kind, rate)
@@ -139,10 +140,7 @@ def _planted(ankle: Array, steps: Steps, foot: Foot, source: Source) -> tuple[Fo
     shift[:, 2:] = shifted(height, steps.kind != NONE, lambda low: np.zeros_like(low))
     carried = shift + _lift(height[:, 0] + shift[:, 2], steps.kind, rate)
     placed = ankle + carried
-    point = np.where(
-        (steps.kind == TIP)[:, None], tip, np.where((pitch < -1e-3)[:, None], heel, ball)
-    )
-    place = placed + point
+    place = placed + np.where(tipped, tip, np.where(heeled, heel, ball))
     plan = FootPlan(steps.kind, still, flat, placed, turn, raised, place)
     return plan, shift
 
@@ -155,8 +153,11 @@ def _bearing(steps: Steps, bears: Mask, rate: float) -> tuple[Array, Array, Mask
     flat = hysteresis(bears & (np.abs(pitch) < _FLAT), bears & (np.abs(pitch) < _RISEN))
     spin = np.abs(np.gradient(averaged(yaw[:, None], _SETTLE, rate)[:, 0]) * rate)
     steady = hysteresis(steps.still & (spin < _TURNING), steps.still & (spin < _SPINNING))
+    for run in runs(steady):
+        steady[run] &= np.abs(yaw[run] - np.median(yaw[run])) < _ASTRAY
     yaw = yaw + shifted(yaw[:, None], steady)[:, 0]
     pitch = pitch + shifted(pitch[:, None], flat, lambda low: np.zeros_like(low))[:, 0]
+    pitch = np.where(steps.kind == BALL, np.maximum(pitch, 0.0), pitch)
     return yaw, pitch, flat
 
 

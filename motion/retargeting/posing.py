@@ -24,14 +24,14 @@ _FIRST, _EACH = 30, 2
 _DIRECTION = 1.0
 """Cost of a segment that points elsewhere, 1/rad."""
 _HAND = 0.3
-_PELVIS, _TORSO, _HEAD = 1.0, 1.0, 0.5
+_PELVIS, _TORSO, _HEAD = 2.0, 1.0, 0.5
 _ROOT = 1.0
 """Cost of the pelvis' place, 1/m: it gives way to legs of other lengths."""
 _PLANTED, _FREE = 30.0, 2.0
 """Costs of an ankle's place, 1/m, on the floor and in the air."""
-_LAID, _LOOSE = 2.0, 0.7
+_LAID, _LOOSE = 1.0, 0.15
 """Costs of a foot's direction, 1/rad, on the floor and in the air."""
-_POSTURE = 0.02
+_POSTURE = 0.05
 """Cost of joint angles, 1/rad: what nothing asks for hangs as at rest."""
 _STEADY = 0.1
 """Cost of moving, 1/rad: a straight limb can turn about itself, and would at a whim."""

@@ -94,8 +94,7 @@ def retarget(
     body = model if isinstance(model, Body) else Body(dancer_model() if model is None else model)
     source = levelled(source_of(payload, mapping))
     scale = body.leg / _leg(source)
-    steps = {side: steps_of(source, body, side, scale) for side in SIDES}
-    plan = make_plan(source, body, steps, scale)
+    plan = make_plan(source, body, steps_of(source, body, scale), scale)
     qpos = averaged_qpos(posed(plan, body, progress), _KINKS, source.rate)
     qpos = pinned(plan, body, qpos)
     motion = Motion.from_qpos(body.model, source.time, qpos, name=name)
