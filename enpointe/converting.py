@@ -88,13 +88,15 @@ def convert(
     skeleton: str | Path | None = None,
     unit: str | None = None,
     names: str | Path | None = None,
+    on_dancer: bool = False,
+    mapping: str | Path | None = None,
     dancer: Anthropometry | None = None,
 ) -> Conversion:
     """Write a motion file as another, in any two formats between which a movement can go.
 
     A skeleton's movement becomes markers where the target holds these, and so do a scene's points;
-    a motion of the dancer (`.npz`, keyframes) becomes a skeleton's. Markers become no skeleton:
-    that takes a body to move.
+    a motion of the dancer (`.npz`, keyframes) becomes a skeleton's. Markers become no skeleton, and
+    neither becomes the dancer's motion, unless it is put on the dancer first.
 
     Args:
         source: A file of any known format, told by its content.
@@ -107,7 +109,10 @@ def convert(
         skeleton: The ASF file of an AMC file, where it does not lie beside it.
         unit: Of the lengths written: m, cm, mm or in; the source's if None.
         names: An MNM file with other names for joints or markers.
-        dancer: Whose a motion of ours is; a dancer of 1.68 m and 54 kg if None.
+        on_dancer: Whether a skeleton's movement or markers are put on our dancer (retargeted), so
+            that what is written is hers.
+        mapping: A file that says which joints or markers are which of hers; found if None.
+        dancer: Whose a motion of ours is, or is to be; a dancer of 1.68 m and 54 kg if None.
 
     Raises:
         FormatError: The source can't be read, or the target's format can't hold it.
@@ -129,6 +134,8 @@ def convert(
             way.at_source_rate(source_rate)
         if names is not None:
             way.rename(names)
+        if on_dancer:
+            way.put_on_dancer(source.stem, dancer, mapping)
         writer = way.fit(writers, rate)
         way.measure(unit, writer)
     except MotionError as error:
@@ -179,6 +186,20 @@ class _Way:
             raise MotionError(f"joints and markers go by other names; {self.read} has neither")
         self.movement, warnings = renamed(self.movement, pairs)
         self.warnings += warnings
+
+    def put_on_dancer(
+        self, name: str, dancer: Anthropometry | None, mapping: str | Path | None
+    ) -> None:
+        from enpointe.models.dancer import dancer_model
+        from enpointe.motion.formats import MarkerMotion, SkeletonMotion
+        from enpointe.motion.retargeting import retarget
+
+        if not isinstance(self.movement, SkeletonMotion | MarkerMotion):
+            raise MotionError(f"only a skeleton or markers are put on the dancer, not {self.read}")
+        done = retarget(self.movement, dancer_model(dancer), mapping=mapping)
+        self.movement = replace(done.motion, name=name)
+        self.warnings += done.warnings
+        self.lose(("the captured body: its proportions and what the dancer's joints can't do",))
 
     def fit(self, writers: tuple[_Writer, ...], rate: float | None) -> _Writer:
         """Makes the movement what one of the writers holds, at a rate, and names that one."""

@@ -115,6 +115,13 @@ class ConversionOptions:
     names: Annotated[
         Path | None, typer.Option(help="An MNM file with other names for joints or markers.")
     ] = None
+    on_dancer: Annotated[
+        bool, typer.Option("--on-dancer", help="Put a captured movement on our dancer first.")
+    ] = False
+    mapping: Annotated[
+        Path | None,
+        typer.Option("--map", help="A file of which joints or markers are which of hers."),
+    ] = None
 
 
 @dataclass(frozen=True)

@@ -71,7 +71,7 @@ def fitted(movement: Movement, kinds: Collection[AnyKind]) -> tuple[Movement, tu
         return markers_of_scene(movement)
     wanted = " or ".join(_WORDS[kind] for kind in kinds)
     raise MotionError(
-        f"{_WORDS[own]} does not become {wanted} by conversion; that takes a body to move"
+        f"{_WORDS[own]} does not become {wanted} by conversion; it must be put on a body first"
     )
 
 

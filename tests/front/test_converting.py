@@ -269,6 +269,30 @@ def test_any_skeleton_format_to_any(home: Path) -> None:
             assert np.allclose(places[:, names.index("knee")], expected[:, 1], atol=1e-9), target
 
 
+@pytest.mark.parametrize(
+    ("file", "target"), [("cmu_c3d/85_02.c3d", "her.bvh"), ("cmu_05/05_12.amc", "her.npz")]
+)
+def test_a_capture_is_put_on_the_dancer(home: Path, data_dir: Path, file: str, target: str) -> None:
+    """Markers become a skeleton, and a skeleton her motion, by way of her body."""
+    done = enpointe.convert(data_dir / file, target, on_dancer=True, rate=10)
+    model = dancer_model(flesh=False)
+    assert any("the captured body" in line for line in done.lost)
+    if target.endswith(".npz"):
+        motion = load_motion(Path(target), model)
+        assert len(motion.time) == done.frames
+        assert motion.name == "05_12"
+        return
+    found = read(target).motion
+    assert isinstance(found, SkeletonMotion)
+    assert found.frames == done.frames
+    assert found.skeleton.names == tuple(model.body(i).name for i in range(1, model.nbody))
+
+
+def test_her_own_motion_is_hers_already(npz: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    says = refused(capfd, "convert", str(npz), "a.bvh", "--on-dancer")
+    assert "only a skeleton or markers are put on the dancer" in says
+
+
 def test_python_raises_what_the_command_says(bvh: Path) -> None:
     with pytest.raises(EnpointeError, match="does not become the dancer's motion"):
         enpointe.convert(bvh, "a.npz")
