@@ -270,9 +270,14 @@ def _writers(target: Path, to: str | None) -> tuple[_Writer, ...]:
         return (_Writer(name, "dancer", own[name]),)
     from enpointe.motion.formats.registry import writable
 
+    try:
+        found = writable(target, to)
+    except EnpointeError as error:
+        more = " " + " ".join(_OWN_ENDINGS) if to is None else ", " + ", ".join(own)
+        raise EnpointeError(f"{error}{more}") from None
     return tuple(
         _Writer(each.name, each.kind, each.write, each.companion)  # type: ignore[arg-type]
-        for each in writable(target, to)
+        for each in found
     )
 
 

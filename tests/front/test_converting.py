@@ -190,7 +190,7 @@ def test_an_ending_can_be_overruled(bvh: Path) -> None:
         ("markers.trc", "a.bvh", "does not become a skeleton's movement"),
         ("leg.bvh", "a.npz", "does not become the dancer's motion"),
         ("leg.bvh", "a.glb", "does not become the dancer's motion"),
-        ("leg.bvh", "a.xyz", "ends in '.xyz'"),
+        ("leg.bvh", "a.xyz", ".trc .npz .gltf .glb .xml"),
         ("leg.bvh", "a", "ends in ''"),
         ("leg.bvh", "leg.bvh", "is what is to be converted"),
         ("leg.bvh", "./there/../leg.bvh", "is what is to be converted"),
