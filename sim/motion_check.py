@@ -21,10 +21,12 @@ from enpointe.models.soles import sole_points
 from enpointe.motion import Motion
 from enpointe.motion.contact_schedule import ContactSchedule, contact_schedule
 from enpointe.sim import balance
+from enpointe.sim.ballistics import Ballistics, ballistics
 from enpointe.sim.feet import SIDES, FootState, foot_states
+from enpointe.sim.impossible import Help, spans_of_help
 from enpointe.sim.measures import Flight, find_flights, heading
 
-__all__ = ["FootContact", "LimitBreach", "MotionCheck", "Turn", "check_motion"]
+__all__ = ["FootContact", "JointSpeed", "LimitBreach", "MotionCheck", "Turn", "check_motion"]
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -37,6 +39,8 @@ SHORTEST_TURN = 0.125
 """Revolutions: less is a change of facing."""
 BEYOND = np.radians(0.1)
 """A joint this far beyond its range, rad, is there by more than rounding."""
+HELP_MAX = 0.05
+"""Of body weight: what is missing below this is the noise of what was measured or drawn."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +88,21 @@ class LimitBreach:
     beyond_deg: float
 
 
+@dataclass(frozen=True, slots=True)
+class JointSpeed:
+    """How fast a joint is at its fastest.
+
+    Attributes:
+        joint: Its name.
+        time: s.
+        speed: rad/s.
+    """
+
+    joint: str
+    time: float
+    speed: float
+
+
 @dataclass(frozen=True)
 class MotionCheck:
     """What was found; T samples, S soles.
@@ -100,10 +119,13 @@ class MotionCheck:
         penetration_max: Deepest that anything is in the floor, m.
         overlap_max: Deepest that limbs are in one another, m.
         flights: In order.
+        ballistics: Each flight that is long enough beside free fall, in order.
         turns: In order.
         breaches: The joints beyond their ranges, worst first.
+        speeds: Every joint at its fastest, fastest first.
         root_wrench: (N,), what of the force and moment on the root the floor could not give, N
             (moments over 1 m), 50 times a second.
+        help: When that is more than a twentieth of body weight, and why.
     """
 
     motion: Motion
@@ -115,9 +137,12 @@ class MotionCheck:
     penetration_max: float
     overlap_max: float
     flights: tuple[Flight, ...]
+    ballistics: tuple[Ballistics, ...]
     turns: tuple[Turn, ...]
     breaches: tuple[LimitBreach, ...]
+    speeds: tuple[JointSpeed, ...]
     root_wrench: Array
+    help: tuple[Help, ...]
 
     @property
     def support_margin_min(self) -> float | None:
@@ -140,13 +165,14 @@ class MotionCheck:
         return float(np.sqrt(np.mean(self.root_wrench**2)))
 
 
-def check_motion(motion: Motion) -> MotionCheck:
+def check_motion(motion: Motion, contacts: ContactSchedule | None = None) -> MotionCheck:
     """Look at a movement of the dancer.
 
     Args:
         motion: Evenly sampled.
+        contacts: What stands and when, where somebody knows; read from the movement otherwise.
     """
-    contacts = contact_schedule(motion)
+    contacts = contact_schedule(motion) if contacts is None else contacts
     body = _Movement.of(motion)
     # Every sole that stands counts alike: the movement does not say how it shares the weight.
     forces = np.zeros((*contacts.bears.shape, 3))
@@ -155,6 +181,10 @@ def check_motion(motion: Motion) -> MotionCheck:
     aloft = np.asarray(~contacts.bears.any(axis=1))
     zmp = _margins(hulls, body.zmp)
     zmp[aloft] = np.nan
+    flights = find_flights(motion.time, motion.qpos, body.com, aloft)
+    gravity = float(-motion.model.opt.gravity[2])
+    free = (ballistics(f, motion.time, body.com, body.momentum, gravity) for f in flights)
+    wanted = FeedForward.along(motion)
     return MotionCheck(
         motion=motion,
         com_margin=_margins(hulls, body.com[:, :2]),
@@ -164,10 +194,15 @@ def check_motion(motion: Motion) -> MotionCheck:
         slip_max=float(balance.slip(contacts.points, forces).max(initial=0.0)),
         penetration_max=body.penetration,
         overlap_max=body.overlap,
-        flights=find_flights(motion.time, motion.qpos, body.com, aloft),
+        flights=flights,
+        ballistics=tuple(flight for flight in free if flight is not None),
         turns=_turns(motion),
         breaches=_breaches(motion),
-        root_wrench=FeedForward.along(motion).shortfall,
+        speeds=_speeds(motion),
+        root_wrench=wanted.shortfall,
+        help=spans_of_help(
+            wanted.time, wanted.shortfall, HELP_MAX * body.weight, motion.time, aloft, zmp
+        ),
     )
 
 
@@ -176,6 +211,7 @@ class _Movement:
     """The body's masses along a motion, (T, ...), and how deep it is in the floor and in itself."""
 
     com: Array
+    momentum: Array
     xcom: Array
     zmp: Array
     weight: float
@@ -204,7 +240,8 @@ class _Movement:
             for c, v in zip(com, velocity, strict=True)
         ]
         weight = plant.mass * plant.gravity
-        return cls(com, np.array(xcom), np.array(zmp), weight, float(depths[0]), float(depths[1]))
+        deep, within = float(depths[0]), float(depths[1])
+        return cls(com, momentum, np.array(xcom), np.array(zmp), weight, deep, within)
 
 
 def _depths(plant: Plant) -> tuple[float, float]:
@@ -273,3 +310,14 @@ def _breaches(motion: Motion) -> tuple[LimitBreach, ...]:
             name, degrees = model.joint(int(joint)).name, float(np.degrees(beyond[worst]))
             breaches.append(LimitBreach(name, float(motion.time[worst]), degrees))
     return tuple(sorted(breaches, key=lambda breach: -breach.beyond_deg))
+
+
+def _speeds(motion: Motion) -> tuple[JointSpeed, ...]:
+    model = motion.model
+    fastest = []
+    for joint in np.flatnonzero(model.jnt_type == mujoco.mjtJoint.mjJNT_HINGE):
+        speed = np.abs(motion.qvel[:, model.jnt_dofadr[joint]])
+        worst = int(np.argmax(speed))
+        name = model.joint(int(joint)).name
+        fastest.append(JointSpeed(name, float(motion.time[worst]), float(speed[worst])))
+    return tuple(sorted(fastest, key=lambda each: -each.speed))
