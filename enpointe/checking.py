@@ -26,6 +26,9 @@ HELP_MAX = 0.05
 danced."""
 SLIP_MAX, PENETRATION_MAX = 0.01, 0.01
 """m: a foot that slides or sinks farther shows."""
+MEASURED = 0.15
+"""s over which a captured movement is averaged before it is differentiated twice: what is slower
+than 6 Hz stays, as is usual for human movement (Winter 2009, section 3.5.2)."""
 FASTEST = 5
 """Joints whose speed is told."""
 BEYOND_MAX = 0.5
@@ -279,7 +282,7 @@ def check(
     from enpointe.sim.motion_check import check_motion
 
     progress("looking", 0, 1)
-    found = check_motion(motion, contacts)
+    found = check_motion(motion, contacts, averaged_over=0.0 if clock is None else MEASURED)
     progress("looking", 1, 1)
     clock = clock or Clock((len(motion.time) - 1) / motion.duration)
     return Check(motion.name, found, clock, warnings, contacts)

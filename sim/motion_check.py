@@ -19,6 +19,7 @@ from enpointe.controllers import FeedForward
 from enpointe.controllers.plant import Plant
 from enpointe.models.soles import sole_points
 from enpointe.motion import Motion
+from enpointe.motion.averaging import averaged_qpos
 from enpointe.motion.contact_schedule import ContactSchedule, contact_schedule
 from enpointe.sim import balance
 from enpointe.sim.ballistics import Ballistics, ballistics
@@ -165,15 +166,20 @@ class MotionCheck:
         return float(np.sqrt(np.mean(self.root_wrench**2)))
 
 
-def check_motion(motion: Motion, contacts: ContactSchedule | None = None) -> MotionCheck:
+def check_motion(
+    motion: Motion, contacts: ContactSchedule | None = None, *, averaged_over: float = 0.0
+) -> MotionCheck:
     """Look at a movement of the dancer.
 
     Args:
         motion: Evenly sampled.
         contacts: What stands and when, where somebody knows; read from the movement otherwise.
+        averaged_over: s; forces and momentum are those of the movement averaged over this window,
+            since two differences of what was measured are mostly noise (Winter 2009, section 3.5).
     """
     contacts = contact_schedule(motion) if contacts is None else contacts
-    body = _Movement.of(motion)
+    steady = _averaged(motion, averaged_over) if averaged_over > 0.0 else motion
+    body = _Movement.of(motion, steady)
     # Every sole that stands counts alike: the movement does not say how it shares the weight.
     forces = np.zeros((*contacts.bears.shape, 3))
     forces[:, :, 2] = np.where(contacts.bears, body.weight, 0.0)
@@ -184,7 +190,7 @@ def check_motion(motion: Motion, contacts: ContactSchedule | None = None) -> Mot
     flights = find_flights(motion.time, motion.qpos, body.com, aloft)
     gravity = float(-motion.model.opt.gravity[2])
     free = (ballistics(f, motion.time, body.com, body.momentum, gravity) for f in flights)
-    wanted = FeedForward.along(motion)
+    wanted = FeedForward.along(steady)
     return MotionCheck(
         motion=motion,
         com_margin=_margins(hulls, body.com[:, :2]),
@@ -206,6 +212,11 @@ def check_motion(motion: Motion, contacts: ContactSchedule | None = None) -> Mot
     )
 
 
+def _averaged(motion: Motion, window: float) -> Motion:
+    rate = 1.0 / float(np.median(np.diff(motion.time)))
+    return Motion.from_qpos(motion.model, motion.time, averaged_qpos(motion.qpos, window, rate))
+
+
 @dataclass(frozen=True)
 class _Movement:
     """The body's masses along a motion, (T, ...), and how deep it is in the floor and in itself."""
@@ -219,17 +230,20 @@ class _Movement:
     overlap: float
 
     @classmethod
-    def of(cls, motion: Motion) -> _Movement:
+    def of(cls, motion: Motion, steady: Motion) -> _Movement:
+        """Depths of the motion itself, masses of what it is averaged to."""
         plant = Plant(motion.model)
         data = plant.data
         com, velocity, momentum = np.empty((3, len(motion.time), 3))
         depths = np.zeros(2)
-        for i, (qpos, qvel) in enumerate(zip(motion.qpos, motion.qvel, strict=True)):
-            plant.place(qpos, qvel)
+        for i, qpos in enumerate(motion.qpos):
+            plant.place(qpos, motion.qvel[i])
+            np.maximum(depths, _depths(plant), out=depths)
+            if steady is not motion:
+                plant.place(steady.qpos[i], steady.qvel[i])
             mujoco.mj_subtreeVel(plant.model, data)
             com[i], velocity[i] = data.subtree_com[0], data.subtree_linvel[0]
             momentum[i] = data.subtree_angmom[0]
-            np.maximum(depths, _depths(plant), out=depths)
         acceleration, rate = (np.gradient(v, motion.time, axis=0) for v in (velocity, momentum))
         zmp = [
             balance.zero_moment_point(c, a, r, plant.mass, plant.gravity)
