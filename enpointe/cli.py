@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import sys
-from dataclasses import asdict
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -15,14 +14,12 @@ import enpointe
 from enpointe.console import Console, rows
 from enpointe.errors import EnpointeError
 from enpointe.options import (
-    ConversionOptions,
     DancerOptions,
     Effort,
     Json,
     OutputOptions,
     Quiet,
     Score,
-    Seed,
     SeededOutputOptions,
     StyledDancerOptions,
     Tempo,
@@ -211,20 +208,32 @@ def check(
     source: Annotated[
         str,
         typer.Argument(
-            help="A motion or a recording (.npz, as perform writes them), a shipped score's name,"
-            " or a .bmn file."
+            help="A motion file of any format that convert reads, put on the dancer first; a motion"
+            " or a recording of hers (.npz); a shipped score's name, or a .bmn file."
         ),
     ],
     *,
     effort: Effort = None,
     tempo: Tempo = None,
+    mapping: Annotated[
+        Path | None,
+        typer.Option("--map", help="Which joints of the file are which, as a TOML file."),
+    ] = None,
+    correct: Annotated[
+        bool,
+        typer.Option(
+            help="Also write corrected.bvh: the same movement with its weight where the feet can"
+            " hold it."
+        ),
+    ] = False,
     dancer: StyledDancerOptions,
-    json: Json = False,
-    quiet: Quiet = False,
-    seed: Seed = 0,
+    output: OutputOptions,
 ) -> int:
     """Look at balance and foot contact of a movement, without dancing it."""
-    console = Console(json=json, quiet=quiet)
+    from enpointe.report.checks import write_check
+
+    console = output.console()
+    folder = output.folder(f"{Path(source).stem}-checked")
     with console.progress() as progress:
         found = enpointe.check(
             source,
@@ -232,42 +241,18 @@ def check(
             tempo=tempo,
             style=dancer.style(),
             dancer=dancer.anthropometry(),
+            mapping=mapping,
             progress=progress,
         )
-    if json:
-        console.print_json(found.summary())
+        files = write_check(found, folder)
+        if correct:
+            files["corrected"] = found.save_corrected(folder / "corrected.bvh", progress)
+    if output.json:
+        console.show(found.summary(), files, folder)
     else:
         console.print(rows(found.lines()))
+        console.print(f"report: {files['report']}")
     return NO if found.faults else DONE
-
-
-@app.command()
-@unbundled
-def convert(
-    source: Annotated[
-        Path,
-        typer.Argument(
-            metavar="IN", help="A motion file of any format, or one that perform wrote (.npz)."
-        ),
-    ],
-    target: Annotated[Path, typer.Argument(metavar="OUT", help="Its ending names the format.")],
-    *,
-    conversion: ConversionOptions,
-    dancer: DancerOptions,
-    json: Json = False,
-    quiet: Quiet = False,
-    seed: Seed = 0,
-) -> int:
-    """Write a motion file in another format, and say what that can't hold."""
-    console = Console(json=json, quiet=quiet)
-    converted = enpointe.convert(
-        source, target, dancer=dancer.anthropometry(), **asdict(conversion)
-    )
-    if json:
-        console.print_json(converted.summary())
-    else:
-        console.print(rows(converted.lines()))
-    return DONE
 
 
 @app.command()

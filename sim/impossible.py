@@ -14,6 +14,8 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 PAUSE = 0.1
 """s: two times of help with less between them are one."""
+FAR = 1.0
+"""m: beyond this the number says nothing more; hardly anything presses on the floor there."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +71,8 @@ def _why(aloft: Mask, zmp_margin: Array) -> str:
         return "in the air, and not falling as bodies fall"
     known = zmp_margin[np.isfinite(zmp_margin)]
     outside = -float(known.min()) if len(known) else 0.0
+    if outside > FAR:
+        return "the floor would have to push more than a metre outside the feet"
     if outside > 0.0:
         return f"the floor would have to push {1000 * outside:.0f} mm outside the feet"
     return "the floor would have to pull, or the feet to slide"

@@ -12,6 +12,7 @@ from enpointe.models.anatomy import SIDES
 from enpointe.motion.averaging import averaged
 from enpointe.motion.contact_schedule import without_chatter
 from enpointe.motion.retargeting.body import BALL, HEEL, NONE, TIP, Body, Foot
+from enpointe.motion.retargeting.heading import headings
 from enpointe.motion.retargeting.holding import hysteresis, runs
 from enpointe.motion.retargeting.source import Source, flat_samples
 
@@ -60,11 +61,13 @@ class Steps:
         kind: (T,), NONE, BALL, HEEL or TIP.
         still: (T,), whether it stands there: neither slides nor is about to leave.
         turn: (T, 3, 3), the foot's frame; on its ball, pitched as high as its ankle is.
+        heading: (T,), where it points, rad.
     """
 
     kind: NDArray[np.int8]
     still: Mask
     turn: Array
+    heading: Array
 
 
 def levelled(source: Source) -> Source:
@@ -139,6 +142,7 @@ class _Seen:
         self._reached = self._over < self._length - self._rise + _MARGIN
         self._turn = _flat(source, side)
         self._pitch = _pitch(self._turn)
+        self._heading = headings(source, side, self._turn)
 
     def on_floor(self) -> Mask:
         """Where its heights leave no doubt."""
@@ -176,7 +180,7 @@ class _Seen:
             (TIP, (tip,)),
         ):
             still |= _standing(places, kind == each, source)
-        return Steps(kind, still, turn)
+        return Steps(kind, still, turn, self._heading)
 
     def _rolling(self, on_heel: Mask, on_ball: Mask) -> Mask:
         """Heels that strike before the ball does, or leave after it, and are soon over."""
@@ -197,9 +201,7 @@ class _Seen:
         pitch = np.arcsin(np.minimum(height, _STEEPEST)) - np.arcsin(self._rise / self._length)
         own = np.minimum(self._pitch, _ON_POINTE)
         pitch = np.where(height > _STEEPEST, np.maximum(pitch, own), pitch)
-        forward = self._turn[:, :, 0]
-        yaw = np.arctan2(forward[:, 1], forward[:, 0])
-        whole = Rotation.from_euler("ZY", np.stack([yaw, pitch], axis=1))
+        whole = Rotation.from_euler("ZY", np.stack([self._heading, pitch], axis=1))
         return np.asarray(whole.as_matrix())
 
 

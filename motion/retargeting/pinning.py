@@ -26,8 +26,12 @@ _ROOT = 4.0
 """What moving the root by 1 m costs, against turning a joint by 1 rad."""
 _CLOSE = 1e-4
 """A foot nearer to its place than this, m and rad, is left alone."""
-_STEPS = 6
-_DAMPING = 1e-8
+_STEPS = 8
+_DAMPING = 1e-6
+_LONGEST = 0.1
+"""No step moves a joint, or the root, farther than this, rad and m."""
+_ROUNDS = 4
+"""How often joints that came to an end of their range are taken out, in one step."""
 
 
 def pinned(plan: Plan, body: Body, qpos: Array) -> Array:
@@ -180,9 +184,31 @@ def _correct(body: Body, data: mujoco.MjData, qpos: Array, feet: dict[str, _Pins
         off = np.concatenate(rows)
         if np.abs(off).max() < _CLOSE:
             return
-        jacobian = np.vstack(jacobians)[:, free]
-        weighted = jacobian / cost
-        gram = weighted @ jacobian.T + _DAMPING * np.eye(len(off))
-        step = -weighted.T @ np.linalg.solve(gram, off)
+        step = _least(
+            np.vstack(jacobians)[:, free], off, cost, room=_room(qpos[addresses], low, high)
+        )
         qpos[:3] += step[:3]
         qpos[addresses] = np.clip(qpos[addresses] + step[3:], low, high)
+
+
+def _room(angles: Array, low: Array, high: Array) -> tuple[Array, Array]:
+    """How far root and joints may yet go, down and up."""
+    free = np.full(3, np.inf)
+    return np.concatenate([-free, low - angles]), np.concatenate([free, high - angles])
+
+
+def _least(jacobian: Array, off: Array, cost: Array, room: tuple[Array, Array]) -> Array:
+    """The least step that makes up for `off`; joints that would pass their range stop at its end."""
+    step = np.zeros(len(cost))
+    moving = np.ones(len(cost), dtype=bool)
+    for _ in range(_ROUNDS):
+        left = off + jacobian[:, ~moving] @ step[~moving]
+        weighted = jacobian[:, moving] / cost[moving]
+        gram = weighted @ jacobian[:, moving].T + _DAMPING * np.eye(len(off))
+        step[moving] = -weighted.T @ np.linalg.solve(gram, left)
+        past = moving & ((step < room[0]) | (step > room[1]))
+        if not past.any():
+            break
+        step[past] = np.clip(step[past], room[0][past], room[1][past])
+        moving &= ~past
+    return step * min(1.0, _LONGEST / max(float(np.abs(step).max()), 1e-12))

@@ -147,14 +147,14 @@ def _planted(ankle: Array, steps: Steps, foot: Foot, source: Source) -> tuple[Fo
 
 def _bearing(steps: Steps, bears: Mask, rate: float) -> tuple[Array, Array, Mask]:
     """Heading and pitch of a foot, rad, as the floor has them; when it is flat."""
-    forward = steps.turn[:, :, 0]
-    yaw = np.unwrap(np.arctan2(forward[:, 1], forward[:, 0]))
-    pitch = -np.arcsin(np.clip(forward[:, 2], -1.0, 1.0))
-    flat = hysteresis(bears & (np.abs(pitch) < _FLAT), bears & (np.abs(pitch) < _RISEN))
+    yaw = steps.heading
+    pitch = -np.arcsin(np.clip(steps.turn[:, 2, 0], -1.0, 1.0))
     spin = np.abs(np.gradient(averaged(yaw[:, None], _SETTLE, rate)[:, 0]) * rate)
     steady = hysteresis(steps.still & (spin < _TURNING), steps.still & (spin < _SPINNING))
     for run in runs(steady):
         steady[run] &= np.abs(yaw[run] - np.median(yaw[run])) < _ASTRAY
+    bears = bears & (steady | ~steps.still)
+    flat = hysteresis(bears & (np.abs(pitch) < _FLAT), bears & (np.abs(pitch) < _RISEN))
     yaw = yaw + shifted(yaw[:, None], steady)[:, 0]
     pitch = pitch + shifted(pitch[:, None], flat, lambda low: np.zeros_like(low))[:, 0]
     pitch = np.where(steps.kind == BALL, np.maximum(pitch, 0.0), pitch)

@@ -37,6 +37,11 @@ _STEADY = 0.1
 """Cost of moving, 1/rad: a straight limb can turn about itself, and would at a whim."""
 
 
+_LOST, _BETTER = 0.45, 0.6
+"""A segment farther off than this, as a chord of the unit circle, may be lost on the wrong side of
+a joint's range: the pose is sought anew, and kept if it leaves less than this share of the cost."""
+
+
 class _Directions(mink.Task):
     """Segments that point where they should: (b - a) / length to a unit vector."""
 
@@ -75,18 +80,29 @@ def posed(plan: Plan, body: Body, progress: Callable[[int, int], None] | None = 
     """
     asking = _Asking(plan, body)
     model = body.model
-    start = body.rest.copy()
-    start[:3] = plan.pelvis[0]
-    start[3:7] = asking.frames["pelvis"][0]
-    configuration = mink.Configuration(model, q=start)
+    configuration = mink.Configuration(model, q=asking.upright(0))
     limits = [mink.ConfigurationLimit(model, gain=1.0)]
-    qpos = np.empty((len(plan.time), model.nq))
-    for i in range(len(qpos)):
-        asking.ask(i)
-        for _ in range(_EACH if i else _FIRST):
+
+    def approach(steps: int) -> Array:
+        for _ in range(steps):
             step = mink.solve_ik(configuration, asking.tasks, _DT, "daqp", 1e-6, limits=limits)
             configuration.integrate_inplace(step, _DT)
-        qpos[i] = configuration.q
+        return np.array(configuration.q)
+
+    qpos = np.empty((len(plan.time), model.nq))
+    for i, row in enumerate(qpos):
+        asking.ask(i)
+        row[:] = approach(_EACH if i else _FIRST)
+        if asking.farthest(configuration) > _LOST:
+            cost = asking.cost(configuration)
+            configuration.update(asking.upright(i))
+            anew = approach(_FIRST)
+            if asking.cost(configuration) < _BETTER * cost:
+                row[:] = anew
+            else:
+                configuration.update(row)
+        if i and row[3:7] @ qpos[i - 1, 3:7] < 0:
+            row[3:7] *= -1.0
         if progress is not None and i % 50 == 0:
             progress(i, len(qpos))
     return qpos
@@ -100,9 +116,11 @@ class _Asking:
         names = [name for name in body.segments if name in plan.directions]
         self._directions = _Directions(body, names)
         self._wanted = np.stack([plan.directions[name] for name in names], axis=1)
-        self._plan = plan
+        self._limbs = np.array([not name.endswith("_hand") for name in names])
+        self._plan, self._rest = plan, body.rest
         self.frames: dict[str, Array] = {}
         self._turned: dict[str, mink.FrameTask] = {}
+        self._across: dict[str, Array] = {}
         for part, cost in (("pelvis", _PELVIS), ("torso", _TORSO), ("head", _HEAD)):
             if part in body.bodies and part in plan.frames:
                 self._add_turned(body, part, plan.frames[part], cost)
@@ -134,7 +152,27 @@ class _Asking:
         name = body.model.body(body.bodies[part]).name
         self._turned[part] = mink.FrameTask(name, "body", 0.0, cost)
         whole = Rotation.from_matrix(turns @ body.turned[part])
+        self._across[part] = 1.0 - np.abs(body.turned[part].T[:, 0]).round()
         self.frames[part] = whole.as_quat(scalar_first=True)
+
+    def upright(self, i: int) -> Array:
+        """The pose at rest, with the pelvis as sample `i` has it."""
+        pose = self._rest.copy()
+        pose[:3] = self._plan.pelvis[i]
+        pose[3:7] = self.frames["pelvis"][i]
+        return pose
+
+    def farthest(self, configuration: mink.Configuration) -> float:
+        """How far the worst of the segments points from where it should, as a chord of 1."""
+        off = self._directions.compute_error(configuration).reshape(-1, 3)[self._limbs]
+        return float(np.linalg.norm(off, axis=1).max())
+
+    def cost(self, configuration: mink.Configuration) -> float:
+        """What is left of all that is asked."""
+        tasks = [self._directions, *self._turned.values(), *self._ankles.values()]
+        return sum(
+            float(np.sum((task.cost * task.compute_error(configuration)) ** 2)) for task in tasks
+        )
 
     def ask(self, i: int) -> None:
         """Set the targets of sample `i`."""
@@ -149,7 +187,9 @@ class _Asking:
             task.set_target(mink.SE3.from_translation(foot.ankle[i]))
             for part in (f"{side}_foot", f"{side}_toe"):
                 if part in self._turned:
-                    self._turned[part].set_orientation_cost(_LAID if stands else _LOOSE)
+                    # How a foot in the air is rolled about itself, captures do not know.
+                    loose = _LOOSE * self._across[part]
+                    self._turned[part].set_orientation_cost(_LAID if stands else loose)
 
 
 def _posture_cost(model: mujoco.MjModel) -> Array:
