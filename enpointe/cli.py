@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from dataclasses import asdict
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -14,6 +15,7 @@ import enpointe
 from enpointe.console import Console, rows
 from enpointe.errors import EnpointeError
 from enpointe.options import (
+    ConversionOptions,
     DancerOptions,
     Effort,
     Json,
@@ -21,9 +23,11 @@ from enpointe.options import (
     Quiet,
     Score,
     SeededOutputOptions,
+    SpeechOptions,
     StyledDancerOptions,
     Tempo,
     Video,
+    find_metre,
     unbundled,
 )
 
@@ -189,7 +193,7 @@ def notate(
     """Read a motion back into a score, and draw its stave."""
     console = output.console()
     notation = enpointe.notate(
-        motion, tempo=tempo, metre=_metre(metre), dancer=dancer.anthropometry()
+        motion, tempo=tempo, metre=find_metre(metre), dancer=dancer.anthropometry()
     )
     folder = output.folder(motion)
     files = notation.save(folder, Path(motion).stem)
@@ -253,6 +257,28 @@ def check(
         console.print(rows(found.lines()))
         console.print(f"report: {files['report']}")
     return NO if found.faults else DONE
+
+
+@app.command()
+@unbundled
+def convert(
+    source: Annotated[Path, typer.Argument(metavar="IN", help="A motion file of any format.")],
+    target: Annotated[Path, typer.Argument(metavar="OUT", help="Its ending names the format.")],
+    *,
+    conversion: ConversionOptions,
+    dancer: DancerOptions,
+    speech: SpeechOptions,
+) -> int:
+    """Write a motion file in another format, and say what that can't hold."""
+    console = speech.console()
+    converted = enpointe.convert(
+        source, target, dancer=dancer.anthropometry(), **asdict(conversion)
+    )
+    if speech.json:
+        console.print_json(converted.summary())
+    else:
+        console.print(rows(converted.lines()))
+    return DONE
 
 
 @app.command()
@@ -370,12 +396,3 @@ def _refuse(message: str) -> int:
     if message.strip():
         print(f"enpointe: {' '.join(message.split())}", file=sys.stderr)
     return BAD_INPUT
-
-
-def _metre(text: str) -> tuple[int, int]:
-    pulses, _, value = text.partition("/")
-    if not (pulses.isdecimal() and value.isdecimal() and 1 <= int(pulses) <= 32):
-        raise EnpointeError(f"{text!r} is no metre; write it as 3/4")
-    if int(value) not in (1, 2, 4, 8, 16):
-        raise EnpointeError(f"{text!r} is no metre; its notes are 1, 2, 4, 8 or 16")
-    return int(pulses), int(value)

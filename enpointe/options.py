@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from enpointe.console import Console
+from enpointe.errors import EnpointeError
 
 if TYPE_CHECKING:
     from enpointe.models import Anthropometry, Style
@@ -26,9 +27,11 @@ __all__ = [
     "Score",
     "Seed",
     "SeededOutputOptions",
+    "SpeechOptions",
     "StyledDancerOptions",
     "Tempo",
     "Video",
+    "find_metre",
     "unbundled",
 ]
 
@@ -125,12 +128,9 @@ class ConversionOptions:
 
 
 @dataclass(frozen=True)
-class OutputOptions:
-    """What is written where."""
+class SpeechOptions:
+    """How a verb speaks."""
 
-    out: Annotated[
-        Path | None, typer.Option(help="Folder to write to; named after the input if left out.")
-    ] = None
     json: Json = False
     quiet: Quiet = False
     seed: Seed = 0
@@ -138,6 +138,15 @@ class OutputOptions:
     def console(self) -> Console:
         """Where the verb speaks."""
         return Console(json=self.json, quiet=self.quiet)
+
+
+@dataclass(frozen=True)
+class OutputOptions(SpeechOptions):
+    """What is written where."""
+
+    out: Annotated[
+        Path | None, typer.Option(help="Folder to write to; named after the input if left out.")
+    ] = None
 
     def folder(self, source: str) -> Path:
         """The folder asked for, or the one named after the input."""
@@ -151,6 +160,20 @@ class SeededOutputOptions(OutputOptions):
     """What is written where, of a verb that draws at random."""
 
     seed: Annotated[int, typer.Option(help="Seed of all that is drawn.")] = 0
+
+
+def find_metre(text: str) -> tuple[int, int]:
+    """Beats in a bar and their note value, from words such as 3/4.
+
+    Raises:
+        EnpointeError: No metre.
+    """
+    pulses, _, value = text.partition("/")
+    if not (pulses.isdecimal() and value.isdecimal() and 1 <= int(pulses) <= 32):
+        raise EnpointeError(f"{text!r} is no metre; write it as 3/4")
+    if int(value) not in (1, 2, 4, 8, 16):
+        raise EnpointeError(f"{text!r} is no metre; its notes are 1, 2, 4, 8 or 16")
+    return int(pulses), int(value)
 
 
 def unbundled(verb: Callable[..., int]) -> Callable[..., int]:
