@@ -67,7 +67,7 @@ def margins(hulls: Sequence[Array], points: Array) -> Array:
     found = np.full(len(hulls), -np.inf)
     for count in np.unique(corners[corners > 0]):
         alike = np.flatnonzero(corners == count)
-        found[alike] = _margins_alike(np.stack([hulls[i] for i in alike]), points[alike])
+        found[alike] = _margins_alike(np.stack([hulls[i] for i in alike.tolist()]), points[alike])
     return found
 
 

@@ -127,14 +127,14 @@ def to_svg(figure: Figure, name: str, description: str) -> str:
 
 def _saved(figure: Figure) -> str:
     """What `savefig` writes. It would draw everything once before, only to find the layout."""
-    canvas = FigureCanvasSVG(figure)
+    FigureCanvasSVG(figure)
     engine, dpi = figure.get_layout_engine(), figure.dpi
     if engine is not None:
         engine.execute(figure)
         figure.set_layout_engine("none")
     figure.dpi = dpi
     buffer = io.StringIO()
-    canvas.print_svg(buffer)
+    figure.savefig(buffer, format="svg")
     return buffer.getvalue()
 
 
