@@ -5,6 +5,8 @@ Lengths in metres, forces in newtons, the floor at z = 0. A margin is positive i
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -18,10 +20,12 @@ __all__ = [
     "extrapolated_com",
     "margin",
     "margin_of_stability",
+    "margins",
     "penetration",
     "room",
     "slip",
     "support",
+    "supports",
     "zero_moment_point",
 ]
 
@@ -43,28 +47,41 @@ def support(points: Array, forces: Array) -> Array:
     return support_hull(points[forces[:, 2] > LOADED, :2])
 
 
+def supports(points: Array, forces: Array) -> list[Array]:
+    """`support` of each sample of points and forces (N, S, 3)."""
+    return [support(p, f) for p, f in zip(points, forces, strict=True)]
+
+
 def margin(hull: Array, point: Array) -> float:
     """Signed distance from a point on the floor to the edge of the support, m.
 
     Positive inside. A support of one or two points has no inside: the margin is minus the distance.
     minus infinity without any support.
     """
-    if len(hull) == 0:
-        return -np.inf
-    gap = _distance_to_outline(hull, point)
-    if len(hull) < 3:
-        return -gap
-    normals, offsets = half_planes(hull)
-    return gap if bool(np.all(normals @ point <= offsets)) else -gap
+    return float(margins([hull], np.asarray(point)[None])[0])
 
 
-def _distance_to_outline(hull: Array, point: Array) -> float:
-    following = np.roll(hull, -1, axis=0)
-    edges = following - hull
-    lengths = np.einsum("ij,ij->i", edges, edges)
-    along = np.einsum("ij,ij->i", point - hull, edges) / np.where(lengths > 0, lengths, 1.0)
-    nearest = hull + np.clip(along, 0.0, 1.0)[:, None] * edges
-    return float(np.linalg.norm(nearest - point, axis=1).min())
+def margins(hulls: Sequence[Array], points: Array) -> Array:
+    """`margin` of each of the points (N, 2) in its own hull, (N,), m."""
+    corners = np.array([len(hull) for hull in hulls])
+    found = np.full(len(hulls), -np.inf)
+    for count in np.unique(corners[corners > 0]):
+        alike = np.flatnonzero(corners == count)
+        found[alike] = _margins_alike(np.stack([hulls[i] for i in alike.tolist()]), points[alike])
+    return found
+
+
+def _margins_alike(hulls: Array, points: Array) -> Array:
+    """Margins (K,) of points (K, 2) in hulls of as many corners each, (K, H, 2)."""
+    edges = np.roll(hulls, -1, axis=1) - hulls
+    away = points[:, None] - hulls
+    lengths = np.einsum("kij,kij->ki", edges, edges)
+    along = np.einsum("kij,kij->ki", away, edges) / np.where(lengths > 0, lengths, 1.0)
+    gaps = away - np.clip(along, 0.0, 1.0)[:, :, None] * edges
+    nearest = np.sqrt(np.einsum("kij,kij->ki", gaps, gaps)).min(axis=1)
+    to_the_left = edges[:, :, 0] * away[:, :, 1] >= edges[:, :, 1] * away[:, :, 0]
+    inside = to_the_left.all(axis=1) & (hulls.shape[1] > 2)
+    return np.asarray(np.where(inside, nearest, -nearest))
 
 
 def centre_of_pressure(points: Array, forces: Array) -> Array:

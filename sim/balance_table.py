@@ -93,7 +93,7 @@ def balance_table(recording: Recording) -> BalanceTable:
     gravity, mass = float(-model.opt.gravity[2]), float(model.body_mass.sum())
     com, velocity, momentum = _movement(recording)
     acceleration, momentum_rate = (_rate(v, recording.time) for v in (velocity, momentum))
-    hulls = [balance.support(p, f) for p, f in zip(points, forces, strict=True)]
+    hulls = balance.supports(points, forces)
     xcom = np.array(
         [balance.extrapolated_com(c, v, gravity) for c, v in zip(com, velocity, strict=True)]
     )
@@ -111,11 +111,11 @@ def balance_table(recording: Recording) -> BalanceTable:
         **_axes("com", com),
         **_axes("com_velocity", velocity),
         "support_area": np.array([balance.area(h) for h in hulls]),
-        "com_margin": _margins(hulls, com[:, :2]),
+        "com_margin": balance.margins(hulls, com[:, :2]),
         **_axes("cop", cop),
         **_axes("zmp", zmp),
         **_axes("xcom", xcom),
-        "margin_of_stability": _margins(hulls, xcom),
+        "margin_of_stability": balance.margins(hulls, xcom),
         **_axes("left_force", feet[:, 0]),
         **_axes("right_force", feet[:, 1]),
         **{f"{side}_foot": np.array([str(s[side]) for s in states]) for side in SIDES},
@@ -149,10 +149,6 @@ def _movement(recording: Recording) -> tuple[Array, Array, Array]:
 
 def _rate(values: Array, time: Array) -> Array:
     return np.gradient(values, time, axis=0) if len(time) > 1 else np.zeros_like(values)
-
-
-def _margins(hulls: list[Array], points: Array) -> Array:
-    return np.array([balance.margin(h, p) for h, p in zip(hulls, points, strict=True)])
 
 
 def _axes(name: str, values: Array) -> dict[str, NDArray[np.generic]]:

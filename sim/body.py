@@ -129,7 +129,8 @@ class SimulatedBody:
 
     def _check(self, command: Command) -> None:
         values = [getattr(command, name) for name in _COMMANDED]
-        whole = all(np.shape(value) == (self.model.nu,) for value in values)
+        shape = self._fresh.shape
+        whole = all(np.shape(value) == shape for value in values)
         if not whole or not np.isfinite(np.concatenate(values)).all():
             for name, value in zip(_COMMANDED, values, strict=True):
                 _checked(f"command {name}", value, self.model.nu)

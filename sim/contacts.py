@@ -36,6 +36,7 @@ class ContactReader:
         self._others = 0
         self._other_force = 0.0
         self.lies = False
+        self._three_rows = _THREE if _forces_stand_alone(model) else None
         self._sort([])
 
     def read(self, data: mujoco.MjData) -> None:
@@ -48,20 +49,27 @@ class ContactReader:
         self.lies = False
         # The contacts' fields as whole arrays: one by one they cost more than the physics.
         contacts = data.contact
-        wrenches = np.zeros((data.ncon, 6))
-        for i, wrench in enumerate(wrenches):
-            mujoco.mj_contactForce(self._model, data, i, wrench)
+        given = self._given(data, contacts.efc_address)
         # The axes of a contact's frame are its rows; the first points from first to second geom.
-        forces = (wrenches[:, None, :3] @ contacts.frame.reshape(-1, 3, 3))[:, 0]
+        forces = (given[:, None] @ contacts.frame.reshape(-1, 3, 3))[:, 0]
         pairs = contacts.geom.tolist()
         if pairs != self._pairs:
             self._sort(pairs)
         for i in self._elsewhere:
             first, second = pairs[i]
-            self._meet(first, second, wrenches[i])
+            self._meet(first, second, given[i])
         if len(self._bearing):
             np.add.at(self._force, self._rows, self._signs * forces[self._bearing])
             self._depth[self._rows] = np.maximum(-contacts.dist[self._bearing], 0.0)
+
+    def _given(self, data: mujoco.MjData, rows: NDArray[np.int32]) -> NDArray[np.float64]:
+        """Forces in the contacts' own frames, (C, 3); `rows` is where each one's begin."""
+        if self._three_rows is not None and (rows >= 0).all():
+            return np.asarray(data.efc_force[rows[:, None] + self._three_rows])
+        wrenches = np.zeros((len(rows), 6))
+        for i, wrench in enumerate(wrenches):
+            mujoco.mj_contactForce(self._model, data, i, wrench)
+        return wrenches[:, :3]
 
     def _sort(self, pairs: list[list[int]]) -> None:
         """Tell soles on the floor from the rest; from step to step the pairs hardly change."""
@@ -74,12 +82,12 @@ class ContactReader:
         self._rows = np.array([row for row in rows if row is not None], dtype=np.int64)
         self._signs = np.array(signs).reshape(-1, 1)
 
-    def _meet(self, first: int, second: int, wrench: NDArray[np.float64]) -> None:
+    def _meet(self, first: int, second: int, force: NDArray[np.float64]) -> None:
         """Note a contact that is no sole on the floor."""
-        bears = bool(wrench[0] > 0.0)
+        bears = bool(force[0] > 0.0)
         self._others += int(bears)
         self.lies = self.lies or (bears and (first in self._floors or second in self._floors))
-        self._other_force = max(self._other_force, float(np.linalg.norm(wrench[:3])))
+        self._other_force = max(self._other_force, float(np.linalg.norm(force)))
 
     def observed(self) -> dict[str, NDArray[np.generic]]:
         """Channels of one sample.
@@ -103,3 +111,16 @@ class ContactReader:
         if second in self._floors:
             return self._row.get(first)
         return None
+
+
+_THREE = np.arange(3)
+
+
+def _forces_stand_alone(model: mujoco.MjModel) -> bool:
+    """Whether the solver's rows of a contact are its force: elliptic cones without torsion.
+
+    With pyramids they are edges of the pyramid, which `mj_contactForce` adds up.
+    """
+    elliptic = model.opt.cone == mujoco.mjtCone.mjCONE_ELLIPTIC
+    touching = (model.geom_contype | model.geom_conaffinity) != 0
+    return bool(elliptic and model.npair == 0 and (model.geom_condim[touching] == 3).all())

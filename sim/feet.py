@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from enum import StrEnum
 from functools import lru_cache
+from types import MappingProxyType
 
 import mujoco
 import numpy as np
@@ -51,9 +52,14 @@ def foot_states(model: mujoco.MjModel, forces: Array) -> Mapping[str, FootState]
         model: The dancer, whose soles are named side_part_...
         forces: (S, 3), floor on sole.
     """
-    names = _sole_names(model)
-    loaded = {name for name, force in zip(names, forces, strict=True) if force[2] > LOADED}
-    return {side: _state(loaded, side) for side in SIDES}
+    return _standing(_sole_names(model), tuple((forces[:, 2] > LOADED).tolist()))
+
+
+@lru_cache(maxsize=1024)
+def _standing(names: tuple[str, ...], bears: tuple[bool, ...]) -> Mapping[str, FootState]:
+    """From one sample to the next mostly the same soles bear."""
+    loaded = {name for name, loaded in zip(names, bears, strict=True) if loaded}
+    return MappingProxyType({side: _state(loaded, side) for side in SIDES})
 
 
 def _state(loaded: set[str], side: str) -> FootState:

@@ -100,15 +100,11 @@ def measure(recording: Recording) -> Measures:
     points = np.asarray(channels["sole_point"], dtype=float)
     forces = np.asarray(channels["sole_force"], dtype=float)
     com = np.asarray(channels["com"], dtype=float)
-    margins = np.array(
-        [
-            balance.margin(balance.support(p, f), c[:2])
-            for p, f, c in zip(points, forces, com, strict=True)
-        ]
-    )
+    hulls = balance.supports(points, forces)
+    margins = balance.margins(hulls, com[:, :2])
     cop = np.array([balance.centre_of_pressure(p, f) for p, f in zip(points, forces, strict=True)])
     limit = recording.model.actuator_forcerange[:, 1]
-    capture = _capture_margins(recording, points, forces, com)
+    capture = _capture_margins(recording, hulls, com)
     return Measures(
         com=com,
         cop=cop,
@@ -127,19 +123,15 @@ def measure(recording: Recording) -> Measures:
     )
 
 
-def _capture_margins(recording: Recording, points: Array, forces: Array, com: Array) -> Array:
+def _capture_margins(recording: Recording, hulls: list[Array], com: Array) -> Array:
     """Margins of the capture point  c + c' sqrt(h / g)  (Hof et al. 2005, extrapolated CoM).
 
     Where it is outside the support, no foot on that support stops the fall.
     """
     gravity = float(-recording.model.opt.gravity[2])
     velocity = np.gradient(com, recording.time, axis=0) if len(com) > 1 else np.zeros_like(com)
-    return np.array(
-        [
-            balance.margin_of_stability(balance.support(p, f), c, v, gravity)
-            for p, f, c, v in zip(points, forces, com, velocity, strict=True)
-        ]
-    )
+    points = [balance.extrapolated_com(c, v, gravity) for c, v in zip(com, velocity, strict=True)]
+    return balance.margins(hulls, np.array(points))
 
 
 def _fell_at(recording: Recording, margins: Array, capture: Array) -> float | None:

@@ -183,7 +183,7 @@ def check_motion(
     # Every sole that stands counts alike: the movement does not say how it shares the weight.
     forces = np.zeros((*contacts.bears.shape, 3))
     forces[:, :, 2] = np.where(contacts.bears, body.weight, 0.0)
-    hulls = [balance.support(p, f) for p, f in zip(contacts.points, forces, strict=True)]
+    hulls = balance.supports(contacts.points, forces)
     aloft = np.asarray(~contacts.bears.any(axis=1))
     zmp = _margins(hulls, body.zmp)
     zmp[aloft] = np.nan
@@ -269,12 +269,8 @@ def _depths(plant: Plant) -> tuple[float, float]:
 
 
 def _margins(hulls: list[Array], points: Array) -> Array:
-    return np.array(
-        [
-            balance.margin(hull, point) if np.all(np.isfinite(point)) else np.nan
-            for hull, point in zip(hulls, points, strict=True)
-        ]
-    )
+    known = np.isfinite(points).all(axis=1)
+    return np.where(known, balance.margins(hulls, points), np.nan)
 
 
 def _foot_contacts(

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from enpointe.controllers.wholebody.instant import Instant
-from enpointe.controllers.wholebody.rows import Bounds, Equality, Limits
+from enpointe.controllers.wholebody.rows import Bounds, Equality, Limits, Places, places, repeated
 
 __all__ = [
     "Constraint",
@@ -70,9 +70,9 @@ class FrictionPyramids:
     name: ClassVar[str] = "friction pyramids"
 
     def limits(self, instant: Instant) -> Bounds:
-        low = np.full(instant.size, -np.inf)
+        low = repeated(-np.inf, instant.size).copy()
         low[instant.nv :] = 0.0
-        return Bounds(low, np.full(instant.size, np.inf))
+        return Bounds(low, repeated(np.inf, instant.size))
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,8 +93,8 @@ class JointRange:
     """
 
     name: ClassVar[str] = "joint range"
-    dofs: NDArray[np.int64]
-    angles: NDArray[np.int64]
+    dofs: Places
+    angles: Places
     low: Array
     high: Array
     horizon: float = 0.03
@@ -106,8 +106,8 @@ class JointRange:
         limited = np.flatnonzero(model.jnt_limited)
         ends = model.jnt_range[limited]
         return cls(
-            np.array(model.jnt_dofadr[limited]),
-            np.array(model.jnt_qposadr[limited]),
+            places(model.jnt_dofadr[limited]),
+            places(model.jnt_qposadr[limited]),
             np.array(ends[:, 0]),
             np.array(ends[:, 1]),
         )
@@ -124,7 +124,7 @@ class JointRange:
             middle = 0.5 * (self.low + self.high)
             low = np.where(crossed & (q > middle), high, low)
             high = np.where(crossed & (q <= middle), low, high)
-        bounds = Bounds(np.full(instant.size, -np.inf), np.full(instant.size, np.inf))
+        bounds = Bounds(*(repeated(end, instant.size).copy() for end in (-np.inf, np.inf)))
         bounds.low[self.dofs], bounds.high[self.dofs] = low, high
         return bounds
 

@@ -40,7 +40,7 @@ class ContactSchedule:
 
     def active(self, t: float, clearance: Array) -> NDArray[np.int64]:
         """Rows of the soles that are planned to bear at `t` and measured on the floor, (A,)."""
-        return np.flatnonzero(self.at(t) & (clearance < NEAR))
+        return (self.at(t) & (clearance < NEAR)).nonzero()[0]
 
 
 class FootShift:
@@ -72,4 +72,5 @@ class FootShift:
 
 
 def _apart(points: Array, wanted: Array, active: NDArray[np.int64]) -> Array:
-    return np.asarray((points - wanted)[active, :2].sum(axis=0) / len(active))
+    apart = (points - wanted).take(active, axis=0)
+    return np.asarray(np.add.reduce(apart[:, :2]) / len(active))

@@ -25,6 +25,7 @@ from enpointe.controllers.wholebody.contacts import ContactSchedule, FootShift
 from enpointe.controllers.wholebody.instant import Instant, Observer
 from enpointe.controllers.wholebody.problem import WholeBodyProblem
 from enpointe.controllers.wholebody.reference import Reference
+from enpointe.controllers.wholebody.rows import places
 from enpointe.controllers.wholebody.tasks import (
     AngularMomentum,
     CentreOfMass,
@@ -134,10 +135,10 @@ class WholeBody:
         inertia = plant.joint_inertia()
         self._stiffness = inertia * TONE_FREQUENCY**2
         self._damping = 2 * inertia * TONE_FREQUENCY
-        self._angles, self._dofs = plant.actuated_qpos, plant.actuated_dofs
-        self._torque = np.zeros(len(self._dofs))
-        self._position = np.zeros(len(self._dofs))
-        self._velocity = np.zeros(len(self._dofs))
+        self._angles, self._dofs = places(plant.actuated_qpos), places(plant.actuated_dofs)
+        self._torque = np.zeros(plant.model.nu)
+        self._position = np.zeros(plant.model.nu)
+        self._velocity = np.zeros(plant.model.nu)
 
     def reset(self, state: State) -> None:
         """Begin from `state`: nothing is remembered of a performance before."""

@@ -61,7 +61,7 @@ def eliminated(
     on_accelerations, on_forces = tie.matrix[:, :count], tie.matrix[:, count:]
     right = np.empty((count, rows + 1), order="F")
     right[:, :rows], right[:, rows] = on_accelerations.T, -accelerations.gradient
-    _, solved, indefinite = lapack.dposv(accelerations.hessian, right)
+    _, solved, indefinite = lapack.dposv(accelerations.hessian.T, right, lower=1)
     ways, free = solved[:, :rows], solved[:, rows]
     error = tie.target - on_accelerations @ free
     # dposv twice and no triangular solver: OpenBLAS gives even the smallest of those to its

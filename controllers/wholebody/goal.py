@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,8 +12,7 @@ __all__ = ["Goal"]
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
-class Goal:
+class Goal(NamedTuple):
     """The reference at one moment, laid where the measured feet are.
 
     Attributes:
@@ -46,7 +45,7 @@ class Goal:
 
     def shifted(self, shift: Array) -> Goal:
         """The same, moved over the floor by `shift` (2,), m."""
-        offset = np.array([*shift.tolist(), 0.0])
+        offset = np.array((*shift.tolist(), 0.0))
         qpos = self.qpos.copy()
         qpos[:3] += offset
-        return replace(self, qpos=qpos, com=self.com + offset, points=self.points + offset)
+        return self._replace(qpos=qpos, com=self.com + offset, points=self.points + offset)

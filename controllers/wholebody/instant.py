@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from enpointe.controllers.plant import Plant
+from enpointe.controllers.wholebody.rows import Places, places
 
 __all__ = ["Instant", "Observer", "skew"]
 
@@ -42,7 +43,8 @@ class Instant:
         active: Rows of `soles` that may bear force, (A,).
         edges: Directions of the forces' generators, (E, 3), sole by sole as in `active`.
         edge_point: Row of `soles` of each generator, (E,).
-        actuated: Dofs of the actuators, (nu,).
+        actuated: Dofs of the actuators, nu of them.
+        angles: Their places in qpos.
         root_rotation: Of the pelvis, (3, 3).
     """
 
@@ -63,7 +65,8 @@ class Instant:
     active: Indices
     edges: Array
     edge_point: Indices
-    actuated: Indices
+    actuated: Places
+    angles: Places
     root_rotation: Array
 
     @property
@@ -99,12 +102,15 @@ class Instant:
         if len(self.edges) == 0:
             return np.zeros((self.nv, 0))
         edges = self.edges.reshape(len(self.active), -1, 3)
-        return np.asarray((edges @ self.jacobians[self.active]).reshape(-1, self.nv).T)
+        return np.asarray((edges @ self.jacobians.take(self.active, axis=0)).reshape(-1, self.nv).T)
 
     @cached_property
     def dynamics(self) -> Array:
         """[M, -J^T], (nv, n): root and joints must give this times x, plus the bias."""
-        return np.concatenate([self.mass_matrix, -self.force_matrix], axis=1)
+        matrix = np.empty((self.nv, self.size))
+        matrix[:, : self.nv] = self.mass_matrix
+        np.negative(self.force_matrix, out=matrix[:, self.nv :])
+        return matrix
 
     def sole_forces(self, unknowns: Array) -> Array:
         """Forces on each sole at a solution, (S, 3), N."""
@@ -131,6 +137,8 @@ class Observer:
         self._roots = np.array(model.body_rootid[self._bodies])
         self._carries = _carries(model, self._bodies)
         pyramid = [[friction, 0, 1], [-friction, 0, 1], [0, friction, 1], [0, -friction, 1]]
+        self._dofs = places(self.plant.actuated_dofs)
+        self._angles = places(self.plant.actuated_qpos)
         self._edges = np.tile(np.array(pyramid), (len(self._soles), 1))
 
     @property
@@ -156,14 +164,13 @@ class Observer:
 
     def clearance(self) -> Array:
         """Height of each sole above the floor, (S,), m."""
-        heights = self.plant.data.geom_xpos[self._soles, 2] - self._radius
-        return np.asarray(heights)
+        return np.asarray(self.points()[:, 2])
 
     def points(self) -> Array:
         """Lowest point of each sole, (S, 3), m."""
-        points = np.array(self.plant.data.geom_xpos[self._soles])
+        points = self.plant.data.geom_xpos.take(self._soles, axis=0)
         points[:, 2] -= self._radius
-        return points
+        return np.asarray(points)
 
     def instant(self, active: Indices) -> Instant:
         """The state placed last, with the given rows of `soles` able to bear force."""
@@ -190,7 +197,8 @@ class Observer:
             active=active,
             edges=self._edges[: 4 * len(active)],
             edge_point=np.repeat(active, 4),
-            actuated=self.plant.actuated_dofs,
+            actuated=self._dofs,
+            angles=self._angles,
             root_rotation=np.array(data.xmat[1]).reshape(3, 3),
         )
 
@@ -205,14 +213,15 @@ class Observer:
         and a column of J is the first with a motion axis for (omega, v).
         """
         data, count = self.plant.data, len(points)
-        arms = points - data.subtree_com[self._roots]
-        shift = np.empty((count, 3, 6))
-        shift[:, :, :3], shift[:, :, 3:] = -skew(arms), _ONE
+        arms = points - data.subtree_com.take(self._roots, axis=0)
+        shift = np.zeros((count, 18))
+        shift[:, _UNTURNED] = 1.0
+        shift[:, _TURNED] = arms.take(_COMPONENT, axis=1) * -_SIGN
         jacobians = (shift.reshape(-1, 6) @ data.cdof.T).reshape(count, 3, -1)
         jacobians *= self._carries
         velocities = (jacobians.reshape(3 * count, -1) @ data.qvel).reshape(-1, 3)
-        acceleration = data.cacc[self._bodies]
-        turning = np.concatenate([acceleration[:, :3], data.cvel[self._bodies, :3]])
+        acceleration = data.cacc.take(self._bodies, axis=0)
+        turning = np.concatenate([acceleration[:, :3], data.cvel.take(self._bodies, axis=0)[:, :3]])
         turned = _cross(turning, np.concatenate([arms, velocities]))
         # MuJoCo lets the world rise at -g instead of pulling the bodies down.
         drifts = acceleration[:, 3:] + turned[:count] + turned[count:] + self.model.opt.gravity
@@ -243,8 +252,10 @@ def _cross(a: Array, b: Array) -> Array:
     return np.asarray(left - a.take(_LAST, axis=1) * b.take(_NEXT, axis=1))
 
 
-_ONE = np.eye(3)
 _NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])
 _OFF_DIAGONAL = np.array([1, 2, 3, 5, 6, 7])
 _COMPONENT = np.array([2, 1, 2, 0, 1, 0])
+_TURNED = np.array([1, 2, 6, 8, 12, 13])
+_UNTURNED = np.array([3, 10, 17])
+"""Where -[r] without its diagonal, and the identity, stand in three rows of six."""
 _SIGN = np.array([-1.0, 1.0, 1.0, -1.0, -1.0, 1.0])

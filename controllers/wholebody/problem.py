@@ -22,7 +22,7 @@ from enpointe.controllers.wholebody.elimination import Cost, eliminated
 from enpointe.controllers.wholebody.goal import Goal
 from enpointe.controllers.wholebody.instant import Instant
 from enpointe.controllers.wholebody.programme import Programme
-from enpointe.controllers.wholebody.rows import Bounds, Direct, Equality, Limits, Rows
+from enpointe.controllers.wholebody.rows import Bounds, Direct, Equality, Limits, Rows, repeated
 from enpointe.controllers.wholebody.tasks import Task
 
 __all__ = ["WholeBodyProblem"]
@@ -81,10 +81,9 @@ class WholeBodyProblem:
     def bounds(self) -> Bounds:
         """All bounds on the unknowns together."""
         n = self.instant.size
-        low, high = np.full(n, -np.inf), np.full(n, np.inf)
+        low, high = repeated(-np.inf, n), repeated(np.inf, n)
         for bounds in self._of(Bounds):
-            np.maximum(low, bounds.low, out=low)
-            np.minimum(high, bounds.high, out=high)
+            low, high = np.maximum(low, bounds.low), np.minimum(high, bounds.high)
         return Bounds(low, high)
 
     @cached_property
@@ -122,7 +121,7 @@ class WholeBodyProblem:
     def _direct(self) -> tuple[Array, Array]:
         """What wishes for unknowns themselves add to the diagonal and to the gradient, (n,)."""
         n = self.instant.size
-        diagonal, gradient = np.full(n, REGULARISATION), np.zeros(n)
+        diagonal, gradient = repeated(REGULARISATION, n).copy(), np.zeros(n)
         for rows in self.rows.values():
             if isinstance(rows, Direct):
                 diagonal[rows.columns] += rows.weight
@@ -138,10 +137,10 @@ class WholeBodyProblem:
         for (first, end), block in self._blocks.items():
             if start <= first and end <= stop:
                 here = slice(first - start, end - start)
-                matrix = np.concatenate([r.matrix for r in block])
-                weighted = matrix * np.concatenate([r.weight for r in block])[:, None]
+                matrix = _joined([r.matrix for r in block])
+                weighted = matrix * _joined([r.weight for r in block])[:, None]
                 hessian[here, here] += weighted.T @ matrix
-                gradient[here] -= np.concatenate([r.target for r in block]) @ weighted
+                gradient[here] -= _joined([r.target for r in block]) @ weighted
         return Cost(hessian, gradient)
 
     def _of(self, kind: type[_Kind]) -> list[_Kind]:
@@ -169,9 +168,8 @@ class WholeBodyProblem:
         unknowns = eliminated(*self.separate, self.equality, low[nv:], high[nv:])
         if unknowns is None:
             return None
-        allowed = np.zeros(len(unknowns))
-        allowed[nv:] = TOLERANCE
-        kept = bool(np.all((unknowns >= low - allowed) & (unknowns <= high + allowed)))
+        outside = np.maximum(low - unknowns, unknowns - high)
+        kept = bool(outside[:nv].max() <= 0.0 and outside[nv:].max(initial=0.0) <= TOLERANCE)
         kept = kept and _outside(self.equality, unknowns) < TOLERANCE
         kept = kept and all(_outside(sided, unknowns) == 0.0 for sided in self._of(Limits))
         return unknowns if kept else None
@@ -183,6 +181,10 @@ class WholeBodyProblem:
     def errors(self, unknowns: Array) -> dict[str, Array]:
         """What each task is left with, A x - b, in its own unit."""
         return {name: rows.error(unknowns) for name, rows in self.rows.items()}
+
+
+def _joined(parts: Sequence[Array]) -> Array:
+    return parts[0] if len(parts) == 1 else np.concatenate(parts)
 
 
 def _outside(limit: Equality | Limits | Bounds, unknowns: Array) -> float:

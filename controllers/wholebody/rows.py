@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Bounds", "Direct", "Equality", "Limits", "Rows"]
+__all__ = ["Bounds", "Direct", "Equality", "Limits", "Places", "Rows", "places", "repeated"]
 
 Array = NDArray[np.float64]
+Places = slice | NDArray[np.int64]
 EVERYTHING = slice(None)
 
 
@@ -47,7 +49,7 @@ class Direct(NamedTuple):
 
     target: Array
     weight: Array
-    columns: slice | NDArray[np.int64]
+    columns: Places
 
     def error(self, unknowns: Array) -> Array:
         """What is left, x[columns] - target, (R,)."""
@@ -85,3 +87,18 @@ class Bounds(NamedTuple):
 
     low: Array
     high: Array
+
+
+@lru_cache(maxsize=256)
+def repeated(value: float, count: int) -> Array:
+    """`count` times the same, not to be written to: there are few such arrays, asked for often."""
+    array = np.full(count, value)
+    array.flags.writeable = False
+    return array
+
+
+def places(indices: NDArray[np.int64]) -> Places:
+    """Neighbouring indices as a slice, which copies nothing; others as they are."""
+    if len(indices) == 0 or (np.diff(indices) != 1).any():
+        return np.array(indices)
+    return slice(int(indices[0]), int(indices[-1]) + 1)

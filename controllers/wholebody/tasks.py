@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from enpointe.controllers.wholebody.goal import Goal
 from enpointe.controllers.wholebody.instant import Instant, skew
-from enpointe.controllers.wholebody.rows import Direct, Rows
+from enpointe.controllers.wholebody.rows import Direct, Rows, repeated
 
 __all__ = [
     "AngularMomentum",
@@ -70,15 +70,15 @@ class CentreOfMass:
 
     def rows(self, instant: Instant, goal: Goal) -> Rows:
         if len(instant.edges) == 0:
-            return _nothing(instant)
+            return _nothing(instant.forces)
         target = self.acceleration(instant, goal)
         target[2] += instant.gravity
-        weight = np.full(3, self.weight)
+        weight = repeated(self.weight, 3)
         return Rows(instant.edges.T / instant.mass, target, weight, instant.forces)
 
     def acceleration(self, instant: Instant, goal: Goal) -> Array:
         """The acceleration asked for, (3,), m/s^2."""
-        omega = np.sqrt(instant.gravity / max(instant.com[2], 0.1))
+        omega = math.sqrt(instant.gravity / max(float(instant.com[2]), 0.1))
         level = omega**2 * (self.capture_gain - 1.0)
         stiffness = np.array([level, level, self.stiffness])
         damping = np.array([omega * self.capture_gain] * 2 + [self.damping])
@@ -102,12 +102,12 @@ class AngularMomentum:
 
     def rows(self, instant: Instant, goal: Goal) -> Rows:
         if len(instant.edges) == 0:
-            return _nothing(instant)
+            return _nothing(instant.forces)
         arms = instant.points[instant.active] - instant.com
         moments = instant.edges.reshape(len(arms), -1, 3) @ skew(arms).transpose(0, 2, 1)
         error = goal.angular_momentum - instant.angular_momentum
         target = goal.angular_momentum_rate + self.gain * error
-        weight = np.full(3, self.weight)
+        weight = repeated(self.weight, 3)
         return Rows(moments.reshape(-1, 3).T, target, weight, instant.forces)
 
 
@@ -128,9 +128,9 @@ class Contact:
 
     def rows(self, instant: Instant, goal: Goal) -> Rows:
         active = instant.active
-        jacobian = instant.jacobians[active].reshape(-1, instant.nv)
+        jacobian = instant.jacobians.take(active, axis=0).reshape(-1, instant.nv)
         target = -(instant.drifts + self.damping * instant.velocities)[active].ravel()
-        return Rows(jacobian, target, np.full(len(target), self.weight), instant.accelerations)
+        return Rows(jacobian, target, repeated(self.weight, len(target)), instant.accelerations)
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,7 +160,7 @@ class Orientation:
         target += self.damping * (between @ goal.qvel[3:6] - instant.qvel[3:6])
         target += between @ goal.qacc[3:6]
         weight = self.weight if len(instant.active) else self.weight_aloft
-        return Direct(target, np.full(3, weight), slice(3, 6))
+        return Direct(target, repeated(weight, 3), slice(3, 6))
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,11 +179,10 @@ class Posture:
     damping: float = 40.0
 
     def rows(self, instant: Instant, goal: Goal) -> Direct:
-        dofs = instant.actuated
-        angles = dofs + len(instant.qpos) - instant.nv
+        dofs, angles = instant.actuated, instant.angles
         target = goal.qacc[dofs] + self.stiffness * (goal.qpos[angles] - instant.qpos[angles])
         target += self.damping * (goal.qvel[dofs] - instant.qvel[dofs])
-        return Direct(target, np.full(len(dofs), self.weight), dofs)
+        return Direct(target, repeated(self.weight, len(target)), dofs)
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,18 +206,20 @@ class SwingFoot:
 
     def rows(self, instant: Instant, goal: Goal) -> Rows:
         away = instant.resting
-        jacobian = instant.jacobians[away].reshape(-1, instant.nv)
+        if len(away) == 0:
+            return _nothing(instant.accelerations)
+        jacobian = instant.jacobians.take(away, axis=0).reshape(-1, instant.nv)
         place = goal.points - instant.points - (goal.com - instant.com)
         rate = goal.point_velocity - instant.velocities
         rate -= goal.com_velocity - instant.com_velocity
         target = goal.point_acceleration - instant.drifts
         target = (target + self.stiffness * place + self.damping * rate)[away].ravel()
-        weight = np.full(len(target), self.weight / 6.0)
+        weight = repeated(self.weight / 6.0, len(target))
         return Rows(jacobian, target, weight, instant.accelerations)
 
 
-def _nothing(instant: Instant) -> Rows:
-    return Rows(np.zeros((0, 0)), np.zeros(0), np.zeros(0), instant.forces)
+def _nothing(columns: slice) -> Rows:
+    return Rows(np.zeros((0, columns.stop - columns.start)), np.zeros(0), np.zeros(0), columns)
 
 
 def _rotation_vector(rotation: Array) -> Array:

@@ -13,6 +13,7 @@ from typing import Any, ParamSpec, TypeVar
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
@@ -107,9 +108,7 @@ def to_svg(figure: Figure, name: str, description: str) -> str:
         name: Unique on the page.
         description: For those who can't see it.
     """
-    buffer = io.StringIO()
-    figure.savefig(buffer, format="svg")
-    text = buffer.getvalue()
+    text = _saved(figure)
     text = text[text.index("<svg") :].strip()
     text = _STYLESHEET.sub("", _METADATA.sub("", text)).replace("<defs>\n  \n </defs>", "")
     box = _VIEW_BOX.search(text)
@@ -124,6 +123,19 @@ def to_svg(figure: Figure, name: str, description: str) -> str:
     text = re.sub(r'\bid="', f'id="{name}-', text)
     text = text.replace('href="#', f'href="#{name}-').replace("url(#", f"url(#{name}-")
     return _PATH.sub(lambda path: _DECIMALS.sub(r"\1", path[0]), text)
+
+
+def _saved(figure: Figure) -> str:
+    """What `savefig` writes. It would draw everything once before, only to find the layout."""
+    FigureCanvasSVG(figure)
+    engine, dpi = figure.get_layout_engine(), figure.dpi
+    if engine is not None:
+        engine.execute(figure)
+        figure.set_layout_engine("none")
+    figure.dpi = dpi
+    buffer = io.StringIO()
+    figure.savefig(buffer, format="svg")
+    return buffer.getvalue()
 
 
 def thinned(time: Array, values: Array, points: int = POINTS) -> tuple[Array, Array]:

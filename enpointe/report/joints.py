@@ -19,6 +19,8 @@ __all__ = ["JointRow", "joint_chart", "joint_rows"]
 
 Array = NDArray[np.float64]
 _COLOURS = {"left": LEFT, "right": RIGHT, "": GREY}
+_BESIDE = {"left": 0.2, "right": -0.2, "": 0.0}
+"""How far above its joint's place a side's bar is drawn."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,15 +71,17 @@ def joint_chart(rows: Sequence[JointRow], name: str) -> str:
     order = sorted(worst, key=lambda joint: worst[joint])
     figure = Figure(figsize=(8.25, 0.95 + 0.25 * len(order)))
     error, torque = figure.subplots(1, 2, sharey=True)
-    for row in rows:
-        place = order.index(row.joint)
-        thick = 0.36 if row.side else 0.5
-        y = place + {"left": 0.2, "right": -0.2, "": 0.0}[row.side]
-        colour = _COLOURS[row.side]
-        error.plot([0.0, row.max_deg], [y, y], color=colour, linewidth=0.8)
-        error.plot([row.max_deg], [y], color=colour, marker="|", markersize=4)
-        error.barh(y, row.rms_deg, height=thick, color=colour)
-        torque.barh(y, 100.0 * row.torque, height=thick, color=colour)
+    for side, colour in _COLOURS.items():
+        mine = [row for row in rows if row.side == side]
+        thick = 0.36 if side else 0.5
+        y = [order.index(row.joint) + _BESIDE[side] for row in mine]
+        greatest = [row.max_deg for row in mine]
+        # One line with gaps, not a line for each joint: an artist costs more than what it draws.
+        ends = [at for end in greatest for at in (0.0, end, np.nan)]
+        error.plot(ends, np.repeat(y, 3), color=colour, linewidth=0.8)
+        error.plot(greatest, y, color=colour, linestyle="none", marker="|", markersize=4)
+        error.barh(y, [row.rms_deg for row in mine], height=thick, color=colour)
+        torque.barh(y, [100.0 * row.torque for row in mine], height=thick, color=colour)
     error.set_yticks(range(len(order)), order)
     error.set_ylim(-0.7, len(order) - 0.3)
     error.set_title("behind the reference")

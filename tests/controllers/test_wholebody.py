@@ -250,8 +250,7 @@ def test_a_wish_met_is_the_references_own_acceleration() -> None:
     start = state(motion.qpos[0], np.zeros(MODEL.nv))
     controller.reset(start)
     instant = controller.build(0.0, start).instant
-    goal = replace(
-        controller._reference.at(0.0),
+    goal = controller._reference.at(0.0)._replace(
         qacc=np.arange(MODEL.nv, dtype=float),
         com_acceleration=np.array([0.1, -0.2, 0.3]),
         angular_momentum_rate=np.array([1.0, 2.0, 3.0]),
@@ -270,7 +269,7 @@ def test_the_capture_point_comes_back_at_its_own_rate(gain: float) -> None:
     """Under the centre of mass' law alone, xi - xi_r decays by exp(-omega (k - 1) t)."""
     instant = observed(held(FIRST).qpos[0], np.zeros(MODEL.nv)).instant(np.arange(12))
     goal = driver(FIRST)._reference.at(0.0)
-    goal = replace(goal, com=instant.com.copy())
+    goal = goal._replace(com=instant.com.copy())
     omega = np.sqrt(instant.gravity / instant.com[2])
     com, velocity = instant.com + np.array([0.01, -0.02, 0.0]), np.array([0.03, 0.01, 0.0])
     dt = 1e-4

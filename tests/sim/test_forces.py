@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from functools import cache
 
 import mujoco
@@ -134,3 +135,25 @@ def test_the_movement_alone_tells_where_the_pressure_is(pose: str) -> None:
         travelled.append(pressure)
     assert max(apart) < 1e-3
     assert np.ptp(np.array(travelled), axis=0).max() > 5e-3
+
+
+@pytest.mark.parametrize("cone", [mujoco.mjtCone.mjCONE_ELLIPTIC, mujoco.mjtCone.mjCONE_PYRAMIDAL])
+def test_forces_are_those_that_mujoco_tells(cone: mujoco.mjtCone) -> None:
+    still = held(FIRST, 0.1)
+    model = copy.copy(still.model)
+    model.opt.cone = cone
+    data, reader = mujoco.MjData(model), ContactReader(model)
+    data.qpos[:] = still.qpos[0]
+    for _ in range(20):
+        mujoco.mj_step(model, data)
+    reader.read(data)
+    forces, wrench = np.zeros((len(reader.soles), 3)), np.zeros(6)
+    for i in range(data.ncon):
+        mujoco.mj_contactForce(model, data, i, wrench)
+        first, second = data.contact.geom[i].tolist()
+        sole, sign = (second, 1.0) if second in reader.soles else (first, -1.0)
+        if sole in reader.soles:
+            on_sole = sign * wrench[:3] @ data.contact.frame[i].reshape(3, 3)
+            forces[reader.soles.tolist().index(sole)] += on_sole
+    assert forces[:, 2].sum() > 100.0
+    np.testing.assert_allclose(reader.observed()["sole_force"], forces, atol=1e-12)

@@ -17,6 +17,7 @@ from enpointe.errors import MotionError, RenderError
 from enpointe.sim.camera import Overlays, View
 from enpointe.sim.render import Painter
 from enpointe.sim.video import (
+    UNSEEN,
     can_write_mp4,
     film,
     frame_samples,
@@ -96,6 +97,44 @@ def test_a_film_paints_marks_and_tells_how_far_it_is() -> None:
     grey = [0, 10, 20, 30, 40, *range(150, 201, 10)]
     assert [level(picture) for picture in pictures] == grey
     assert heard == [(done, 11) for done in range(1, 12)]
+
+
+class CountingPainter(GreyPainter):
+    """Counts its pictures."""
+
+    def __init__(self) -> None:
+        self.painted: list[float] = []
+
+    def paint(
+        self, qpos: ArrayLike, *, camera: View, overlays: Overlays | None = None
+    ) -> Image.Image:
+        self.painted.append(float(np.asarray(qpos)[0]))
+        return super().paint(qpos, camera=camera, overlays=overlays)
+
+
+def test_what_stands_still_is_painted_once() -> None:
+    """And a slow movement is never behind by more than can be seen."""
+    time = np.arange(40) / 10.0
+    rise = np.concatenate([np.zeros(20), 0.3 * UNSEEN * np.arange(20)])
+    painter = CountingPainter()
+    assert len(list(film(time, rise[:, None], painter, View(), 10.0))) == 40
+    assert painter.painted[0] == 0.0
+    assert len(painter.painted) == 5
+    assert np.diff(painter.painted) == pytest.approx(1.2 * UNSEEN)
+
+
+def test_marks_that_change_are_painted() -> None:
+    foot, toes = np.eye(3)[:, :2], 0.5 * np.eye(3)[:, :2]
+    marks = [None, Overlays(support=foot), Overlays(support=foot), Overlays(support=toes)]
+    marks += [Overlays(support=toes, com=True), Overlays(support=toes[:2], com=True)]
+    pushed = Overlays(
+        support=toes[:2], com=True, force_points=np.zeros((1, 3)), forces=np.eye(3)[:1]
+    )
+    marks += [pushed, pushed]
+    painter = CountingPainter()
+    films = film(np.arange(8.0), np.zeros((8, 1)), painter, View(), 1.0, overlays=marks.__getitem__)
+    assert len(list(films)) == 8
+    assert len(painter.painted) == 7
 
 
 @pytest.mark.parametrize(
