@@ -180,6 +180,8 @@ class _Seen:
             (TIP, (tip,)),
         ):
             still |= _standing(places, kind == each, source)
+        # A tip that brushes the floor is kept out of it, and not to it.
+        kind = np.where((kind == TIP) & ~still, NONE, kind).astype(np.int8)
         return Steps(kind, still, turn, self._heading)
 
     def _rolling(self, on_heel: Mask, on_ball: Mask) -> Mask:

@@ -26,6 +26,8 @@ _ROOT = 4.0
 """What moving the root by 1 m costs, against turning a joint by 1 rad."""
 _CLOSE = 1e-4
 """A foot nearer to its place than this, m and rad, is left alone."""
+_FAR = 1e-3
+"""A foot that can't be brought nearer than this, m and rad, is let lie as it will."""
 _STEPS = 8
 _DAMPING = 1e-6
 _LONGEST = 0.1
@@ -97,8 +99,16 @@ class _Pins:
         self._forward = data.xmat[ends[0]].reshape(3, 3).T @ [1.0, 0.0, 0.0]
         self._foot = ends[0]
 
-    def misplaced(self, data: mujoco.MjData, i: int) -> tuple[list[Array], list[Array]]:
-        """How far a foot is from its place and its Jacobian, in pieces."""
+    def misplaced(
+        self, data: mujoco.MjData, i: int, *, whole: bool = True
+    ) -> tuple[list[Array], list[Array]]:
+        """How far a foot is from its place and its Jacobian, in pieces.
+
+        Args:
+            data: Its kinematics.
+            i: The sample.
+            whole: Whether it must also lie as it should, not only touch where it should.
+        """
         model, plan = self._model, self._plan
         rows: list[Array] = []
         jacobians: list[Array] = []
@@ -110,11 +120,11 @@ class _Pins:
             found, jacobian = self._point(data, point)
             rows.append(found - plan.place[i])
             jacobians.append(jacobian)
-            if plan.flat[i]:
+            if whole and plan.flat[i]:
                 down = [*self._of[HEEL], *self._of[BALL], *self._of[TIP]]
-            elif kind == BALL:
+            elif whole and kind == BALL:
                 down = [*self._of[BALL], *self._of[TIP]]
-            if kind != TIP:
+            if whole and kind != TIP:
                 off, jacobian = self._heading(data, plan.turn[i])
                 rows.append(off)
                 jacobians.append(jacobian)
@@ -159,7 +169,17 @@ def _local(data: mujoco.MjData, body: int, place: Array) -> _Point:
 
 
 def _correct(body: Body, data: mujoco.MjData, qpos: Array, feet: dict[str, _Pins], i: int) -> None:
-    """Correct one configuration (nq,) in place."""
+    """Correct one configuration (nq,) in place: feet that can't lie as they should still touch."""
+    asked = qpos.copy()
+    if _approach(body, data, qpos, feet, i, whole=True) > _FAR:
+        qpos[:] = asked
+        _approach(body, data, qpos, feet, i, whole=False)
+
+
+def _approach(
+    body: Body, data: mujoco.MjData, qpos: Array, feet: dict[str, _Pins], i: int, *, whole: bool
+) -> float:
+    """A few steps, in place, and how far off what is left is."""
     model = body.model
     legs = np.concatenate([foot.dofs for foot in feet.values()])
     addresses = np.concatenate([foot.addresses for foot in feet.values()])
@@ -169,26 +189,20 @@ def _correct(body: Body, data: mujoco.MjData, qpos: Array, feet: dict[str, _Pins
     high = np.where(limited, model.jnt_range[joints, 1], np.inf)
     free = np.concatenate([np.arange(3), legs])
     cost = np.concatenate([np.full(3, _ROOT), np.ones(len(legs))])
-    for _ in range(_STEPS):
+    for step in range(_STEPS + 1):
         data.qpos[:] = qpos
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
-        rows: list[Array] = []
-        jacobians: list[Array] = []
-        for foot in feet.values():
-            found, moved = foot.misplaced(data, i)
-            rows += found
-            jacobians += moved
-        if not rows:
-            return
-        off = np.concatenate(rows)
-        if np.abs(off).max() < _CLOSE:
-            return
-        step = _least(
-            np.vstack(jacobians)[:, free], off, cost, room=_room(qpos[addresses], low, high)
-        )
-        qpos[:3] += step[:3]
-        qpos[addresses] = np.clip(qpos[addresses] + step[3:], low, high)
+        found = [foot.misplaced(data, i, whole=whole) for foot in feet.values()]
+        off = np.concatenate([np.empty(0), *(row for rows, _ in found for row in rows)])
+        left = float(np.abs(off).max(initial=0.0))
+        if left < _CLOSE or step == _STEPS:
+            break
+        jacobian = np.vstack([moved for _, pieces in found for moved in pieces])[:, free]
+        moved = _least(jacobian, off, cost, _room(qpos[addresses], low, high))
+        qpos[:3] += moved[:3]
+        qpos[addresses] = np.clip(qpos[addresses] + moved[3:], low, high)
+    return left
 
 
 def _room(angles: Array, low: Array, high: Array) -> tuple[Array, Array]:
@@ -198,7 +212,7 @@ def _room(angles: Array, low: Array, high: Array) -> tuple[Array, Array]:
 
 
 def _least(jacobian: Array, off: Array, cost: Array, room: tuple[Array, Array]) -> Array:
-    """The least step that makes up for `off`; joints that would pass their range stop at its end."""
+    """The least step that makes up for `off`; joints stop at the ends of their ranges."""
     step = np.zeros(len(cost))
     moving = np.ones(len(cost), dtype=bool)
     for _ in range(_ROUNDS):
