@@ -36,6 +36,8 @@ _MARGIN = 0.01
 under it."""
 _HEEL_ROLLS = 0.25
 """s: nobody stands on a heel alone for longer; whoever seems to has a badly captured foot."""
+_ROLLS = 0.06
+"""s: a foot takes so long to roll from heel to ball."""
 _STILL, _MOVING = 0.12, 0.30
 """m/s: slower than the first a foot stands, until it is faster than the second."""
 _WANDER = 0.025
@@ -60,13 +62,15 @@ class Steps:
     Attributes:
         kind: (T,), NONE, BALL, HEEL or TIP.
         still: (T,), whether it stands there: neither slides nor is about to leave.
-        turn: (T, 3, 3), the foot's frame; on its ball, pitched as high as its ankle is.
+        turn: (T, 3, 3), the foot's frame.
+        pitch: (T,), how far it points down if it is on the floor, rad: as high as its ankle is.
         heading: (T,), where it points, rad.
     """
 
     kind: NDArray[np.int8]
     still: Mask
     turn: Array
+    pitch: Array
     heading: Array
 
 
@@ -171,8 +175,10 @@ class _Seen:
         kind = np.select([on_ball, on_heel, on_tip], [BALL, HEEL, TIP], NONE)
         down = without_chatter((kind != NONE)[:, None], period)[:, 0]
         kind = np.where(down, np.where(kind == NONE, BALL, kind), NONE).astype(np.int8)
-        turn = np.where((kind == BALL)[:, None, None], self._on_ball(), self._turn)
-        ball = self._ankle + turn @ (self._foot.ball / self._scale)
+        pitch = np.where((kind == HEEL) | (kind == TIP), self._pitch, self._on_ball())
+        pitch = averaged(pitch[:, None], _ROLLS, source.rate)[:, 0]
+        lain = Rotation.from_euler("ZY", np.stack([self._heading, pitch], axis=1))
+        ball = self._ankle + lain.apply(self._foot.ball / self._scale)
         still = np.zeros(len(kind), dtype=bool)
         for each, places in (
             (BALL, (ball, self._toe, self._ankle)),
@@ -182,7 +188,7 @@ class _Seen:
             still |= _standing(places, kind == each, source)
         # A tip that brushes the floor is kept out of it, and not to it.
         kind = np.where((kind == TIP) & ~still, NONE, kind).astype(np.int8)
-        return Steps(kind, still, turn, self._heading)
+        return Steps(kind, still, self._turn, pitch, self._heading)
 
     def _rolling(self, on_heel: Mask, on_ball: Mask) -> Mask:
         """Heels that strike before the ball does, or leave after it, and are soon over."""
@@ -198,13 +204,11 @@ class _Seen:
         return np.asarray(np.linalg.norm(np.gradient(smooth, self._source.time, axis=0), axis=1))
 
     def _on_ball(self) -> Array:
-        """The foot's frame if it stands on its ball with the ankle as high as it is."""
+        """Pitch of the foot, (T,), rad, if it stands on its ball with its ankle where it is."""
         height = (self._rise + np.maximum(self._over, 0.0)) / self._length
         pitch = np.arcsin(np.minimum(height, _STEEPEST)) - np.arcsin(self._rise / self._length)
         own = np.minimum(self._pitch, _ON_POINTE)
-        pitch = np.where(height > _STEEPEST, np.maximum(pitch, own), pitch)
-        whole = Rotation.from_euler("ZY", np.stack([self._heading, pitch], axis=1))
-        return np.asarray(whole.as_matrix())
+        return np.asarray(np.where(height > _STEEPEST, np.maximum(pitch, own), pitch))
 
 
 def _pitch(turn: Array) -> Array:

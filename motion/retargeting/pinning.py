@@ -15,20 +15,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from enpointe.models.anatomy import SIDES
-from enpointe.motion.grounding import fade_in_and_out
+from enpointe.motion.averaging import averaged
 from enpointe.motion.retargeting.body import BALL, HEEL, NONE, TIP, Body
 from enpointe.motion.retargeting.plan import FootPlan, Plan
 
 __all__ = ["pinned"]
 
 Array = NDArray[np.float64]
-_ROOT = 4.0
+_ROOT = 10.0
 """What moving the root by 1 m costs, against turning a joint by 1 rad."""
 _CLOSE = 1e-4
 """A foot nearer to its place than this, m and rad, is left alone."""
 _FAR = 1e-3
 """A foot that can't be brought nearer than this, m and rad, is let lie as it will."""
 _STEPS = 8
+_EASED = (0.15, 0.08)
+"""s: widths over which corrections are averaged, one round after the other."""
 _DAMPING = 1e-6
 _LONGEST = 0.1
 """No step moves a joint, or the root, farther than this, rad and m."""
@@ -47,16 +49,23 @@ def pinned(plan: Plan, body: Body, qpos: Array) -> Array:
     Returns:
         (T, nq).
     """
-    feet = {side: _Pins(body, side, plan.feet[side]) for side in SIDES}
+    kinds = {side: plan.feet[side].kind for side in SIDES}
+    feet = {
+        # Nobody stands on a toe that touches the floor beside a standing foot.
+        side: _Pins(body, side, plan.feet[side], (kinds[side] == TIP) & (kinds[other] != NONE))
+        for side, other in zip(SIDES, reversed(SIDES), strict=True)
+    }
     data = mujoco.MjData(body.model)
+    rate = 1.0 / float(plan.time[1])
+    soft = qpos.copy()
+    for width in _EASED:
+        # What a pin moves is shared out over its neighbours: feet come and go without jerks.
+        soft += averaged(_corrected(body, data, soft, feet) - soft, width, rate)
+    return _corrected(body, data, soft, feet)
+
+
+def _corrected(body: Body, data: mujoco.MjData, qpos: Array, feet: dict[str, _Pins]) -> Array:
     placed = qpos.copy()
-    for i, row in enumerate(placed):
-        _correct(body, data, row, feet, i)
-    stands = {side: plan.feet[side].kind != NONE for side in SIDES}
-    for side, foot in feet.items():
-        fade_in_and_out(plan.time, qpos, placed, foot.addresses, stands[side])
-    either = np.logical_or(*stands.values())
-    fade_in_and_out(plan.time, qpos, placed, np.arange(3), either)
     for i, row in enumerate(placed):
         _correct(body, data, row, feet, i)
     return placed
@@ -73,9 +82,10 @@ class _Point:
 class _Pins:
     """What holds one foot."""
 
-    def __init__(self, body: Body, side: str, plan: FootPlan) -> None:
+    def __init__(self, body: Body, side: str, plan: FootPlan, loose: NDArray[np.bool_]) -> None:
         model, foot = body.model, body.feet[side]
         self._model, self._plan = model, plan
+        self._kind = np.where(loose, NONE, plan.kind)
         data = mujoco.MjData(model)
         data.qpos[:] = body.rest
         mujoco.mj_kinematics(model, data)
@@ -112,7 +122,7 @@ class _Pins:
         model, plan = self._model, self._plan
         rows: list[Array] = []
         jacobians: list[Array] = []
-        kind = int(plan.kind[i])
+        kind = int(self._kind[i])
         down: list[int] = []
         if kind != NONE:
             heel = kind == HEEL and not plan.flat[i]
