@@ -11,9 +11,10 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+import matplotlib
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, ImageDraw
+from PIL import Image, ImageDraw, ImageFont
 
 from enpointe.motion.formats import SkeletonMotion, read
 from enpointe.motion.retargeting import Retargeted, retarget
@@ -23,10 +24,12 @@ from enpointe.sim.camera import Projection, View
 from enpointe.sim.render import Painter, open_painter
 
 PICTURE = Path(__file__).parent / "images" / "retargeting.jpg"
+FONT = Path(matplotlib.get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf"
+"""Pillow's own font has no accents."""
 WIDTH, HEIGHT, LABEL = 190, 240, 16
 SHEET = {
     "05_14": ("arabesque", (480, 505, 520, 540)),
-    "05_16": ("jeté", (186, 198, 210, 222)),
+    "05_16": ("grand jeté", (186, 198, 210, 222)),
     "05_09": ("glissade", (600, 640, 690, 740)),
 }
 """Of each take, what it is and frames at its own rate."""
@@ -79,7 +82,7 @@ def cell(painter: Painter, motion: SkeletonMotion, made: Retargeted, frame: int)
 def main(folder: Path, picture: Path) -> None:
     columns = max(len(frames) for _, frames in SHEET.values())
     page = Image.new("RGB", (columns * 2 * WIDTH, len(SHEET) * (HEIGHT + LABEL)), "white")
-    ink = ImageDraw.Draw(page)
+    ink, font = ImageDraw.Draw(page), ImageFont.truetype(str(FONT), 12)
     for row, (take, (what, frames)) in enumerate(SHEET.items()):
         motion = read(folder / f"{take}.amc").motion
         assert isinstance(motion, SkeletonMotion)
@@ -88,7 +91,12 @@ def main(folder: Path, picture: Path) -> None:
             for column, frame in enumerate(frames):
                 x, y = column * 2 * WIDTH, row * (HEIGHT + LABEL)
                 page.paste(cell(painter, motion, made, frame), (x, y))
-                ink.text((x + 4, y + HEIGHT + 2), f"{take} {what}, frame {frame}", fill="black")
+                ink.text(
+                    (x + 4, y + HEIGHT + 2),
+                    f"{take} {what}, frame {frame}",
+                    fill="black",
+                    font=font,
+                )
     page.save(picture, quality=82)
     print(picture)
 

@@ -31,6 +31,8 @@ _ON, _OFF = 0.02, 0.045
 second."""
 _FLAT_ON, _FLAT_OFF = 0.012, 0.03
 """The same of an ankle over a flat foot, of a heel and of the tip of the toes."""
+_RESTS, _SKIMS = 0.3, 0.4
+"""A foot faster than the first, m/s, must be nearer to the floor, by the second, to be on it."""
 _MARGIN = 0.01
 """m: an ankle higher than the foot is long, by more than this, has no ball of a foot on the floor
 under it."""
@@ -150,9 +152,15 @@ class _Seen:
 
     def on_floor(self) -> Mask:
         """Where its heights leave no doubt."""
-        toe = hysteresis(self._toe_over < _ON, self._toe_over < _OFF) & self._reached
-        ankle = hysteresis(self._over < _FLAT_ON, self._over < _FLAT_OFF)
+        toe = self._down(self._toe, self._toe_over, _ON, _OFF) & self._reached
+        ankle = self._down(self._ankle, self._over, _FLAT_ON, _FLAT_OFF)
         return np.asarray(toe | ankle)
+
+    def _down(self, place: Array, over: Array, on: float, off: float) -> Mask:
+        """Where a point is low: noise may lift one that rests, but none that moves."""
+        rests = self._speed(place) < _RESTS
+        surely = (over < on) & rests | (over < _SKIMS * on)
+        return hysteresis(surely, (over < off) & rests | (over < _SKIMS * off))
 
     def rests(self) -> Mask:
         """Where it may carry: its ankle is low enough, and moves little."""

@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from enpointe.models.anatomy import SIDES
 from enpointe.motion.retargeting.body import NONE, Body
+from enpointe.motion.retargeting.holding import ramped
 from enpointe.motion.retargeting.landmarks import sided
 from enpointe.motion.retargeting.plan import Plan
 
@@ -26,9 +27,12 @@ _DIRECTION = 1.0
 """Cost of a segment that points elsewhere, 1/rad."""
 _HAND = 0.3
 _PELVIS, _TORSO, _HEAD = 2.0, 1.0, 0.5
-_ROOT = 1.0
-"""Cost of the pelvis' place, 1/m: it gives way to legs of other lengths."""
-_PLANTED, _FREE = 30.0, 2.0
+_ROOT, _ROOT_ALOFT = 1.5, 12.0
+"""Costs of the pelvis' place, 1/m: over feet it gives way to legs of other lengths, and in the air
+to nothing."""
+_ALOFT = 0.15
+"""s: it goes from the one to the other in so long."""
+_PLANTED, _FREE = 30.0, 0.5
 """Costs of an ankle's place, 1/m, on the floor and in the air."""
 _LAID, _LOOSE = 1.0, 0.15
 """Costs of a foot's direction, 1/rad, on the floor and in the air."""
@@ -129,7 +133,9 @@ class _Asking:
             if part in body.bodies and part in plan.frames:
                 self._add_turned(body, part, plan.frames[part], cost)
         self._pelvis = self._turned["pelvis"]
-        self._pelvis.set_position_cost(_ROOT)
+        down = np.logical_or(*(plan.feet[side].kind != NONE for side in SIDES))
+        near = ramped(down, _ALOFT, 1.0 / float(plan.time[1]))
+        self._root = near * _ROOT + (1.0 - near) * _ROOT_ALOFT
         self._ankles: dict[str, mink.FrameTask] = {}
         for side in SIDES:
             foot = plan.feet[side]
@@ -181,6 +187,7 @@ class _Asking:
     def ask(self, i: int) -> None:
         """Set the targets of sample `i`."""
         self._directions.target = self._wanted[i]
+        self._pelvis.set_position_cost(float(self._root[i]))
         for part, task in self._turned.items():
             place = self._plan.pelvis[i] if part == "pelvis" else np.zeros(3)
             task.set_target(mink.SE3(np.concatenate([self.frames[part][i], place])))
