@@ -11,9 +11,10 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+import matplotlib
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, ImageDraw
+from PIL import Image, ImageDraw, ImageFont
 
 from enpointe.motion.formats import SkeletonMotion, read
 from enpointe.motion.retargeting import Retargeted, retarget
@@ -23,13 +24,17 @@ from enpointe.sim.camera import Projection, View
 from enpointe.sim.render import Painter, open_painter
 
 PICTURE = Path(__file__).parent / "images" / "retargeting.jpg"
+FONT = Path(matplotlib.get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf"
+"""Pillow's own font has no accents."""
 WIDTH, HEIGHT, LABEL = 190, 240, 16
 SHEET = {
     "05_14": ("arabesque", (480, 505, 520, 540)),
-    "05_16": ("jeté", (186, 198, 210, 222)),
+    "05_16": ("grand jeté", (186, 198, 210, 222)),
     "05_09": ("glissade", (600, 640, 690, 740)),
 }
 """Of each take, what it is and frames at its own rate."""
+SIDE = 90.0
+"""Degrees from the way that the pelvis faces to the line of sight: from the dancer's right."""
 LEFT, RIGHT, MIDDLE = (200, 60, 50), (40, 80, 160), (70, 70, 70)
 Array = NDArray[np.float64]
 
@@ -46,8 +51,9 @@ def sticks(motion: SkeletonMotion, made: Retargeted, frame: int, view: View) -> 
     ink = ImageDraw.Draw(page)
     projection = Projection(view, WIDTH, HEIGHT)
     floor = np.array([*made.motion.qpos[frame, :2], 0.0])
-    rim = [floor + [0.6 * np.cos(a), 0.6 * np.sin(a), 0.0] for a in np.linspace(0, 2 * np.pi, 33)]
-    ink.line([tuple(p) for p in projection.to_pixels(projection.to_camera(np.array(rim)))], "#bbb")
+    around = np.linspace(0, 2 * np.pi, 33)
+    rim = floor + 0.6 * np.stack([np.cos(around), np.sin(around), 0.0 * around], axis=1)
+    ink.line([tuple(p) for p in projection.to_pixels(projection.to_camera(rim))], fill="#bbb")
     pixels = projection.to_pixels(projection.to_camera(placed))
     for joint, parent in enumerate(each.parent for each in motion.skeleton.joints):
         if parent >= 0:
@@ -66,9 +72,7 @@ def cell(painter: Painter, motion: SkeletonMotion, made: Retargeted, frame: int)
             2 * (qpos[3] * qpos[6] + qpos[4] * qpos[5]), 1 - 2 * (qpos[5] ** 2 + qpos[6] ** 2)
         )
     )
-    view = View(
-        azimuth=heading + 125.0, distance=5.2, lookat=(float(qpos[0]), float(qpos[1]), 0.95)
-    )
+    view = View(azimuth=heading + SIDE, distance=5.2, lookat=(float(qpos[0]), float(qpos[1]), 0.95))
     page = Image.new("RGB", (2 * WIDTH, HEIGHT), "white")
     page.paste(sticks(motion, made, frame, view), (0, 0))
     page.paste(painter.paint(qpos, camera=view), (WIDTH, 0))
@@ -78,7 +82,7 @@ def cell(painter: Painter, motion: SkeletonMotion, made: Retargeted, frame: int)
 def main(folder: Path, picture: Path) -> None:
     columns = max(len(frames) for _, frames in SHEET.values())
     page = Image.new("RGB", (columns * 2 * WIDTH, len(SHEET) * (HEIGHT + LABEL)), "white")
-    ink = ImageDraw.Draw(page)
+    ink, font = ImageDraw.Draw(page), ImageFont.truetype(str(FONT), 12)
     for row, (take, (what, frames)) in enumerate(SHEET.items()):
         motion = read(folder / f"{take}.amc").motion
         assert isinstance(motion, SkeletonMotion)
@@ -87,7 +91,12 @@ def main(folder: Path, picture: Path) -> None:
             for column, frame in enumerate(frames):
                 x, y = column * 2 * WIDTH, row * (HEIGHT + LABEL)
                 page.paste(cell(painter, motion, made, frame), (x, y))
-                ink.text((x + 4, y + HEIGHT + 2), f"{take} {what}, frame {frame}", fill="black")
+                ink.text(
+                    (x + 4, y + HEIGHT + 2),
+                    f"{take} {what}, frame {frame}",
+                    fill="black",
+                    font=font,
+                )
     page.save(picture, quality=82)
     print(picture)
 

@@ -31,11 +31,15 @@ _ON, _OFF = 0.02, 0.045
 second."""
 _FLAT_ON, _FLAT_OFF = 0.012, 0.03
 """The same of an ankle over a flat foot, of a heel and of the tip of the toes."""
+_RESTS, _SKIMS = 0.3, 0.4
+"""A foot faster than the first, m/s, must be nearer to the floor, by the second, to be on it."""
 _MARGIN = 0.01
 """m: an ankle higher than the foot is long, by more than this, has no ball of a foot on the floor
 under it."""
 _HEEL_ROLLS = 0.25
 """s: nobody stands on a heel alone for longer; whoever seems to has a badly captured foot."""
+_ROLLS = 0.06
+"""s: a foot takes so long to roll from heel to ball."""
 _STILL, _MOVING = 0.12, 0.30
 """m/s: slower than the first a foot stands, until it is faster than the second."""
 _WANDER = 0.025
@@ -60,13 +64,15 @@ class Steps:
     Attributes:
         kind: (T,), NONE, BALL, HEEL or TIP.
         still: (T,), whether it stands there: neither slides nor is about to leave.
-        turn: (T, 3, 3), the foot's frame; on its ball, pitched as high as its ankle is.
+        turn: (T, 3, 3), the foot's frame.
+        pitch: (T,), how far it points down if it is on the floor, rad: as high as its ankle is.
         heading: (T,), where it points, rad.
     """
 
     kind: NDArray[np.int8]
     still: Mask
     turn: Array
+    pitch: Array
     heading: Array
 
 
@@ -146,9 +152,15 @@ class _Seen:
 
     def on_floor(self) -> Mask:
         """Where its heights leave no doubt."""
-        toe = hysteresis(self._toe_over < _ON, self._toe_over < _OFF) & self._reached
-        ankle = hysteresis(self._over < _FLAT_ON, self._over < _FLAT_OFF)
+        toe = self._down(self._toe, self._toe_over, _ON, _OFF) & self._reached
+        ankle = self._down(self._ankle, self._over, _FLAT_ON, _FLAT_OFF)
         return np.asarray(toe | ankle)
+
+    def _down(self, place: Array, over: Array, on: float, off: float) -> Mask:
+        """Where a point is low: noise may lift one that rests, but none that moves."""
+        rests = self._speed(place) < _RESTS
+        surely = (over < on) & rests | (over < _SKIMS * on)
+        return hysteresis(surely, (over < off) & rests | (over < _SKIMS * off))
 
     def rests(self) -> Mask:
         """Where it may carry: its ankle is low enough, and moves little."""
@@ -171,8 +183,10 @@ class _Seen:
         kind = np.select([on_ball, on_heel, on_tip], [BALL, HEEL, TIP], NONE)
         down = without_chatter((kind != NONE)[:, None], period)[:, 0]
         kind = np.where(down, np.where(kind == NONE, BALL, kind), NONE).astype(np.int8)
-        turn = np.where((kind == BALL)[:, None, None], self._on_ball(), self._turn)
-        ball = self._ankle + turn @ (self._foot.ball / self._scale)
+        pitch = np.where((kind == HEEL) | (kind == TIP), self._pitch, self._on_ball())
+        pitch = averaged(pitch[:, None], _ROLLS, source.rate)[:, 0]
+        lain = Rotation.from_euler("ZY", np.stack([self._heading, pitch], axis=1))
+        ball = self._ankle + lain.apply(self._foot.ball / self._scale)
         still = np.zeros(len(kind), dtype=bool)
         for each, places in (
             (BALL, (ball, self._toe, self._ankle)),
@@ -180,7 +194,9 @@ class _Seen:
             (TIP, (tip,)),
         ):
             still |= _standing(places, kind == each, source)
-        return Steps(kind, still, turn, self._heading)
+        # A tip that brushes the floor is kept out of it, and not to it.
+        kind = np.where((kind == TIP) & ~still, NONE, kind).astype(np.int8)
+        return Steps(kind, still, self._turn, pitch, self._heading)
 
     def _rolling(self, on_heel: Mask, on_ball: Mask) -> Mask:
         """Heels that strike before the ball does, or leave after it, and are soon over."""
@@ -196,13 +212,11 @@ class _Seen:
         return np.asarray(np.linalg.norm(np.gradient(smooth, self._source.time, axis=0), axis=1))
 
     def _on_ball(self) -> Array:
-        """The foot's frame if it stands on its ball with the ankle as high as it is."""
+        """Pitch of the foot, (T,), rad, if it stands on its ball with its ankle where it is."""
         height = (self._rise + np.maximum(self._over, 0.0)) / self._length
         pitch = np.arcsin(np.minimum(height, _STEEPEST)) - np.arcsin(self._rise / self._length)
         own = np.minimum(self._pitch, _ON_POINTE)
-        pitch = np.where(height > _STEEPEST, np.maximum(pitch, own), pitch)
-        whole = Rotation.from_euler("ZY", np.stack([self._heading, pitch], axis=1))
-        return np.asarray(whole.as_matrix())
+        return np.asarray(np.where(height > _STEEPEST, np.maximum(pitch, own), pitch))
 
 
 def _pitch(turn: Array) -> Array:

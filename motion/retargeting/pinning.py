@@ -15,18 +15,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from enpointe.models.anatomy import SIDES
-from enpointe.motion.grounding import fade_in_and_out
+from enpointe.motion.averaging import averaged
 from enpointe.motion.retargeting.body import BALL, HEEL, NONE, TIP, Body
 from enpointe.motion.retargeting.plan import FootPlan, Plan
 
 __all__ = ["pinned"]
 
 Array = NDArray[np.float64]
-_ROOT = 4.0
+_ROOT = 10.0
 """What moving the root by 1 m costs, against turning a joint by 1 rad."""
 _CLOSE = 1e-4
 """A foot nearer to its place than this, m and rad, is left alone."""
+_FAR = 1e-3
+"""A foot that can't be brought nearer than this, m and rad, is let lie as it will."""
 _STEPS = 8
+_EASED = (0.15, 0.08)
+"""s: widths over which corrections are averaged, one round after the other."""
 _DAMPING = 1e-6
 _LONGEST = 0.1
 """No step moves a joint, or the root, farther than this, rad and m."""
@@ -45,16 +49,23 @@ def pinned(plan: Plan, body: Body, qpos: Array) -> Array:
     Returns:
         (T, nq).
     """
-    feet = {side: _Pins(body, side, plan.feet[side]) for side in SIDES}
+    kinds = {side: plan.feet[side].kind for side in SIDES}
+    feet = {
+        # Nobody stands on a toe that touches the floor beside a standing foot.
+        side: _Pins(body, side, plan.feet[side], (kinds[side] == TIP) & (kinds[other] != NONE))
+        for side, other in zip(SIDES, reversed(SIDES), strict=True)
+    }
     data = mujoco.MjData(body.model)
+    rate = 1.0 / float(plan.time[1])
+    soft = qpos.copy()
+    for width in _EASED:
+        # What a pin moves is shared out over its neighbours: feet come and go without jerks.
+        soft += averaged(_corrected(body, data, soft, feet) - soft, width, rate)
+    return _corrected(body, data, soft, feet)
+
+
+def _corrected(body: Body, data: mujoco.MjData, qpos: Array, feet: dict[str, _Pins]) -> Array:
     placed = qpos.copy()
-    for i, row in enumerate(placed):
-        _correct(body, data, row, feet, i)
-    stands = {side: plan.feet[side].kind != NONE for side in SIDES}
-    for side, foot in feet.items():
-        fade_in_and_out(plan.time, qpos, placed, foot.addresses, stands[side])
-    either = np.logical_or(*stands.values())
-    fade_in_and_out(plan.time, qpos, placed, np.arange(3), either)
     for i, row in enumerate(placed):
         _correct(body, data, row, feet, i)
     return placed
@@ -71,9 +82,10 @@ class _Point:
 class _Pins:
     """What holds one foot."""
 
-    def __init__(self, body: Body, side: str, plan: FootPlan) -> None:
+    def __init__(self, body: Body, side: str, plan: FootPlan, loose: NDArray[np.bool_]) -> None:
         model, foot = body.model, body.feet[side]
         self._model, self._plan = model, plan
+        self._kind = np.where(loose, NONE, plan.kind)
         data = mujoco.MjData(model)
         data.qpos[:] = body.rest
         mujoco.mj_kinematics(model, data)
@@ -97,12 +109,20 @@ class _Pins:
         self._forward = data.xmat[ends[0]].reshape(3, 3).T @ [1.0, 0.0, 0.0]
         self._foot = ends[0]
 
-    def misplaced(self, data: mujoco.MjData, i: int) -> tuple[list[Array], list[Array]]:
-        """How far a foot is from its place and its Jacobian, in pieces."""
+    def misplaced(
+        self, data: mujoco.MjData, i: int, *, whole: bool = True
+    ) -> tuple[list[Array], list[Array]]:
+        """How far a foot is from its place and its Jacobian, in pieces.
+
+        Args:
+            data: Its kinematics.
+            i: The sample.
+            whole: Whether it must also lie as it should, not only touch where it should.
+        """
         model, plan = self._model, self._plan
         rows: list[Array] = []
         jacobians: list[Array] = []
-        kind = int(plan.kind[i])
+        kind = int(self._kind[i])
         down: list[int] = []
         if kind != NONE:
             heel = kind == HEEL and not plan.flat[i]
@@ -110,11 +130,11 @@ class _Pins:
             found, jacobian = self._point(data, point)
             rows.append(found - plan.place[i])
             jacobians.append(jacobian)
-            if plan.flat[i]:
+            if whole and plan.flat[i]:
                 down = [*self._of[HEEL], *self._of[BALL], *self._of[TIP]]
-            elif kind == BALL:
+            elif whole and kind == BALL:
                 down = [*self._of[BALL], *self._of[TIP]]
-            if kind != TIP:
+            if whole and kind != TIP:
                 off, jacobian = self._heading(data, plan.turn[i])
                 rows.append(off)
                 jacobians.append(jacobian)
@@ -159,7 +179,17 @@ def _local(data: mujoco.MjData, body: int, place: Array) -> _Point:
 
 
 def _correct(body: Body, data: mujoco.MjData, qpos: Array, feet: dict[str, _Pins], i: int) -> None:
-    """Correct one configuration (nq,) in place."""
+    """Correct one configuration (nq,) in place: feet that can't lie as they should still touch."""
+    asked = qpos.copy()
+    if _approach(body, data, qpos, feet, i, whole=True) > _FAR:
+        qpos[:] = asked
+        _approach(body, data, qpos, feet, i, whole=False)
+
+
+def _approach(
+    body: Body, data: mujoco.MjData, qpos: Array, feet: dict[str, _Pins], i: int, *, whole: bool
+) -> float:
+    """A few steps, in place, and how far off what is left is."""
     model = body.model
     legs = np.concatenate([foot.dofs for foot in feet.values()])
     addresses = np.concatenate([foot.addresses for foot in feet.values()])
@@ -169,26 +199,20 @@ def _correct(body: Body, data: mujoco.MjData, qpos: Array, feet: dict[str, _Pins
     high = np.where(limited, model.jnt_range[joints, 1], np.inf)
     free = np.concatenate([np.arange(3), legs])
     cost = np.concatenate([np.full(3, _ROOT), np.ones(len(legs))])
-    for _ in range(_STEPS):
+    for step in range(_STEPS + 1):
         data.qpos[:] = qpos
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
-        rows: list[Array] = []
-        jacobians: list[Array] = []
-        for foot in feet.values():
-            found, moved = foot.misplaced(data, i)
-            rows += found
-            jacobians += moved
-        if not rows:
-            return
-        off = np.concatenate(rows)
-        if np.abs(off).max() < _CLOSE:
-            return
-        step = _least(
-            np.vstack(jacobians)[:, free], off, cost, room=_room(qpos[addresses], low, high)
-        )
-        qpos[:3] += step[:3]
-        qpos[addresses] = np.clip(qpos[addresses] + step[3:], low, high)
+        found = [foot.misplaced(data, i, whole=whole) for foot in feet.values()]
+        off = np.concatenate([np.empty(0), *(row for rows, _ in found for row in rows)])
+        left = float(np.abs(off).max(initial=0.0))
+        if left < _CLOSE or step == _STEPS:
+            break
+        jacobian = np.vstack([moved for _, pieces in found for moved in pieces])[:, free]
+        moved = _least(jacobian, off, cost, _room(qpos[addresses], low, high))
+        qpos[:3] += moved[:3]
+        qpos[addresses] = np.clip(qpos[addresses] + moved[3:], low, high)
+    return left
 
 
 def _room(angles: Array, low: Array, high: Array) -> tuple[Array, Array]:
@@ -198,7 +222,7 @@ def _room(angles: Array, low: Array, high: Array) -> tuple[Array, Array]:
 
 
 def _least(jacobian: Array, off: Array, cost: Array, room: tuple[Array, Array]) -> Array:
-    """The least step that makes up for `off`; joints that would pass their range stop at its end."""
+    """The least step that makes up for `off`; joints stop at the ends of their ranges."""
     step = np.zeros(len(cost))
     moving = np.ones(len(cost), dtype=bool)
     for _ in range(_ROUNDS):

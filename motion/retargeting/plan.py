@@ -120,12 +120,12 @@ def _planted(ankle: Array, steps: Steps, foot: Foot, source: Source) -> tuple[Fo
     """A foot's plan, and what it was shifted by, (T, 3), m."""
     rate = source.rate
     bears = (steps.kind == BALL) | (steps.kind == HEEL)
-    laid = ramped(bears, _SETTLE, rate)
+    laid = ramped(steps.kind != NONE, _SETTLE, rate)
     yaw, pitch, flat = _bearing(steps, bears, rate)
     turn = _blended(steps.turn, _standing_turn(yaw, pitch), laid)
     pitch = -np.arcsin(np.clip(turn[:, 2, 0], -1.0, 1.0))
     heeled, tipped = ((steps.kind == HEEL) & ~flat)[:, None], (steps.kind == TIP)[:, None]
-    raised = laid * np.maximum(pitch, 0.0)
+    raised = ramped(bears, _SETTLE, rate) * np.maximum(pitch, 0.0)
     ahead = np.stack([np.cos(yaw), np.sin(yaw), np.zeros_like(yaw)], axis=1)
     ball, heel, tip = _sole(turn, raised, foot)
     # Where the ball would be if the foot were laid down about the point that it touches with.
@@ -148,7 +148,7 @@ def _planted(ankle: Array, steps: Steps, foot: Foot, source: Source) -> tuple[Fo
 def _bearing(steps: Steps, bears: Mask, rate: float) -> tuple[Array, Array, Mask]:
     """Heading and pitch of a foot, rad, as the floor has them; when it is flat."""
     yaw = steps.heading
-    pitch = -np.arcsin(np.clip(steps.turn[:, 2, 0], -1.0, 1.0))
+    pitch = steps.pitch
     spin = np.abs(np.gradient(averaged(yaw[:, None], _SETTLE, rate)[:, 0]) * rate)
     steady = hysteresis(steps.still & (spin < _TURNING), steps.still & (spin < _SPINNING))
     for run in runs(steady):

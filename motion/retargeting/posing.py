@@ -12,6 +12,8 @@ from scipy.spatial.transform import Rotation
 
 from enpointe.models.anatomy import SIDES
 from enpointe.motion.retargeting.body import NONE, Body
+from enpointe.motion.retargeting.holding import ramped
+from enpointe.motion.retargeting.landmarks import sided
 from enpointe.motion.retargeting.plan import Plan
 
 __all__ = ["posed"]
@@ -25,16 +27,22 @@ _DIRECTION = 1.0
 """Cost of a segment that points elsewhere, 1/rad."""
 _HAND = 0.3
 _PELVIS, _TORSO, _HEAD = 2.0, 1.0, 0.5
-_ROOT = 1.0
-"""Cost of the pelvis' place, 1/m: it gives way to legs of other lengths."""
-_PLANTED, _FREE = 30.0, 2.0
+_ROOT, _ROOT_ALOFT = 1.5, 12.0
+"""Costs of the pelvis' place, 1/m: over feet it gives way to legs of other lengths, and in the air
+to nothing."""
+_ALOFT = 0.15
+"""s: it goes from the one to the other in so long."""
+_PLANTED, _FREE = 30.0, 0.5
 """Costs of an ankle's place, 1/m, on the floor and in the air."""
 _LAID, _LOOSE = 1.0, 0.15
 """Costs of a foot's direction, 1/rad, on the floor and in the air."""
 _POSTURE = 0.05
 """Cost of joint angles, 1/rad: what nothing asks for hangs as at rest."""
-_STEADY = 0.1
-"""Cost of moving, 1/rad: a straight limb can turn about itself, and would at a whim."""
+_STEADY, _STEADY_FOOT = 0.15, 0.35
+"""Costs of moving, 1/rad. The second is of what turns limbs about themselves, which a straight one
+would at a whim, and of feet, which in the air are captured so badly that it averages them."""
+_TWIST = 0.9
+"""A hinge turns a limb about itself if the cosine between them is above this."""
 
 
 _LOST, _BETTER = 0.45, 0.6
@@ -125,7 +133,9 @@ class _Asking:
             if part in body.bodies and part in plan.frames:
                 self._add_turned(body, part, plan.frames[part], cost)
         self._pelvis = self._turned["pelvis"]
-        self._pelvis.set_position_cost(_ROOT)
+        down = np.logical_or(*(plan.feet[side].kind != NONE for side in SIDES))
+        near = ramped(down, _ALOFT, 1.0 / float(plan.time[1]))
+        self._root = near * _ROOT + (1.0 - near) * _ROOT_ALOFT
         self._ankles: dict[str, mink.FrameTask] = {}
         for side in SIDES:
             foot = plan.feet[side]
@@ -139,7 +149,7 @@ class _Asking:
             self._ankles[side] = mink.FrameTask(site, "site", _PLANTED, 0.0)
         self._posture = mink.PostureTask(model, cost=_posture_cost(model))
         self._posture.set_target(body.rest)
-        steady = mink.DampingTask(model, cost=np.full(model.nv, _STEADY))
+        steady = mink.DampingTask(model, cost=_steady_cost(body))
         self.tasks = [
             self._directions,
             *self._turned.values(),
@@ -177,6 +187,7 @@ class _Asking:
     def ask(self, i: int) -> None:
         """Set the targets of sample `i`."""
         self._directions.target = self._wanted[i]
+        self._pelvis.set_position_cost(float(self._root[i]))
         for part, task in self._turned.items():
             place = self._plan.pelvis[i] if part == "pelvis" else np.zeros(3)
             task.set_target(mink.SE3(np.concatenate([self.frames[part][i], place])))
@@ -195,4 +206,20 @@ class _Asking:
 def _posture_cost(model: mujoco.MjModel) -> Array:
     cost = np.full(model.nv, _POSTURE)
     cost[:6] = 0.0
+    return cost
+
+
+def _steady_cost(body: Body) -> Array:
+    model = body.model
+    cost = np.full(model.nv, _STEADY)
+    feet = [body.bodies[part] for part in sided("foot", "toe") if part in body.bodies]
+    cost[np.isin(model.dof_bodyid, feet)] = _STEADY_FOOT
+    data = mujoco.MjData(model)
+    data.qpos[:] = body.rest
+    mujoco.mj_kinematics(model, data)
+    for start, end, length in body.segments.values():
+        along = (data.site_xpos[end] - data.site_xpos[start]) / length
+        mine = model.dof_bodyid == model.site_bodyid[start]
+        twists = np.abs(data.xaxis[model.dof_jntid] @ along) > _TWIST
+        cost[mine & twists] = _STEADY_FOOT
     return cost

@@ -14,7 +14,7 @@ from enpointe.models.anatomy import SIDES
 from enpointe.models.dancer import dancer_model
 from enpointe.models.soles import sole_geoms
 from enpointe.motion.averaging import averaged_qpos
-from enpointe.motion.contact_schedule import ContactSchedule, trace_soles
+from enpointe.motion.contact_schedule import ON_FLOOR, ContactSchedule, trace_soles
 from enpointe.motion.formats.content import Content, Payload
 from enpointe.motion.formats.registry import read
 from enpointe.motion.motion import Motion
@@ -101,7 +101,7 @@ def retarget(
     return Retargeted(
         motion,
         _contacts(motion, body, plan),
-        {side: plan.feet[side].still for side in SIDES},
+        {side: plan.feet[side].still & (plan.feet[side].kind != TIP) for side in SIDES},
         mapping,
         (*warnings, *source.warnings),
         residuals(plan, body, motion),
@@ -124,13 +124,15 @@ def _contacts(motion: Motion, body: Body, plan: Plan) -> ContactSchedule:
     soles = sole_geoms(model)
     points = trace_soles(motion, soles)
     bears = np.zeros(points.shape[:2], dtype=bool)
-    for side in SIDES:
+    for side, other in zip(SIDES, reversed(SIDES), strict=True):
         foot, kind = plan.feet[side], plan.feet[side].kind
+        carries = (kind != NONE) & ((kind != TIP) | (plan.feet[other].kind == NONE))
         ends = body.soles_of(side)
         for end, when in (
             (HEEL, foot.flat | (kind == HEEL)),
             (BALL, foot.flat | (kind == BALL)),
             (TIP, foot.flat | (kind == BALL) | (kind == TIP)),
         ):
-            bears[:, np.isin(soles, ends[end])] |= (when & (kind != NONE))[:, None]
-    return ContactSchedule(motion.time, soles, points, bears)
+            bears[:, np.isin(soles, ends[end])] |= (when & carries)[:, None]
+    # A foot that its joints can't lay flat bears with what of it is down.
+    return ContactSchedule(motion.time, soles, points, bears & (points[:, :, 2] < ON_FLOOR))

@@ -20,7 +20,7 @@ __all__ = ["map_skeleton_by_structure"]
 
 Array = NDArray[np.float64]
 _ALIKE = 0.25
-"""Two limbs are a pair if their lengths differ by less than this share."""
+"""Two limbs are a pair if none of their bones differ by more than this share."""
 _ZERO = 1e-6
 """A bone shorter than this share of the skeleton is none."""
 
@@ -40,7 +40,7 @@ def map_skeleton_by_structure(skeleton: Skeleton, world: Array) -> JointMap:
         return JointMap(points, {}, "structure")
     legs = min(pairs, key=lambda pair: sum(chains.foot(limb) for limb in pair))
     hung = chains.hung(legs)
-    others = [pair for pair in pairs if not set(pair[0]) & set(hung) and pair != legs]
+    others = [pair for pair in pairs if not set(pair[0] + pair[1]) & set(hung)]
     arms = max(others, key=lambda pair: chains.length(pair[0]), default=None)
     forward = sum(world[:, limb[-1]] - world[:, limb[-2]] for limb in legs)
     left = np.cross([0.0, 0.0, 1.0], forward)
@@ -92,10 +92,17 @@ class _Chains:
         for children in self._skeleton.children:
             limbs = [self._limb(child) for child in children]
             for one, other in combinations([limb for limb in limbs if len(limb) >= 3], 2):
-                lengths = self.length(one), self.length(other)
-                if len(one) == len(other) and abs(lengths[0] - lengths[1]) < _ALIKE * max(lengths):
+                if len(one) == len(other) and self._alike(one, other):
                     found.append((one, other))
         return found
+
+    def _alike(self, one: tuple[int, ...], other: tuple[int, ...]) -> bool:
+        """Whether two limbs have the same bones, one after the other."""
+        bones, others = (
+            np.linalg.norm(np.diff(self._places[list(limb)], axis=0), axis=1)
+            for limb in (one, other)
+        )
+        return bool(np.all(np.abs(bones - others) <= _ALIKE * np.maximum(bones, others)))
 
     def _limb(self, joint: int) -> tuple[int, ...]:
         """Down the longest branch, joints in the same place counted once."""
