@@ -45,6 +45,7 @@ class Instant:
         edge_point: Row of `soles` of each generator, (E,).
         actuated: Dofs of the actuators, nu of them.
         angles: Their places in qpos.
+        in_legs: Which of them carry a sole, (nu,).
         root_rotation: Of the pelvis, (3, 3).
     """
 
@@ -67,6 +68,7 @@ class Instant:
     edge_point: Indices
     actuated: Places
     angles: Places
+    in_legs: NDArray[np.bool_]
     root_rotation: Array
 
     @property
@@ -139,6 +141,7 @@ class Observer:
         pyramid = [[friction, 0, 1], [-friction, 0, 1], [0, friction, 1], [0, -friction, 1]]
         self._dofs = places(self.plant.actuated_dofs)
         self._angles = places(self.plant.actuated_qpos)
+        self._in_legs = np.max(self._carries, axis=(0, 1))[self.plant.actuated_dofs] > 0.0
         self._edges = np.tile(np.array(pyramid), (len(self._soles), 1))
 
     @property
@@ -199,6 +202,7 @@ class Observer:
             edge_point=np.repeat(active, 4),
             actuated=self._dofs,
             angles=self._angles,
+            in_legs=self._in_legs,
             root_rotation=np.array(data.xmat[1]).reshape(3, 3),
         )
 

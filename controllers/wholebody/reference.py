@@ -16,7 +16,7 @@ from enpointe.motion.averaging import averaged
 __all__ = ["Reference"]
 
 Array = NDArray[np.float64]
-_WHOLE = 0.1
+_WHOLE = 0.2
 """s: rates of the body as a whole are averaged over this window. Where a foot leaves, a corner of a
 millimetre in the poses is several m/s^2 and hundreds of N m, which no floor gives."""
 

@@ -167,14 +167,19 @@ class Orientation:
 class Posture:
     """Every joint follows its reference:  q'' = q''_r + k (q_r - q) + d (q'_r - q').
 
+    Trunk and arms less than the legs: they are what she catches her balance with, while a leg that
+    is late is a step that is late.
+
     Attributes:
-        weight: Per (rad/s^2)^2.
+        weight: Of the legs, per (rad/s^2)^2.
+        upper_weight: Of all else.
         stiffness: k, 1/s^2.
         damping: d, 1/s.
     """
 
     name: ClassVar[str] = "posture"
-    weight: float = 0.15
+    weight: float = 0.2
+    upper_weight: float = 0.1
     stiffness: float = 400.0
     damping: float = 40.0
 
@@ -182,7 +187,8 @@ class Posture:
         dofs, angles = instant.actuated, instant.angles
         target = goal.qacc[dofs] + self.stiffness * (goal.qpos[angles] - instant.qpos[angles])
         target += self.damping * (goal.qvel[dofs] - instant.qvel[dofs])
-        return Direct(target, repeated(self.weight, len(target)), dofs)
+        weight = np.where(instant.in_legs, self.weight, self.upper_weight)
+        return Direct(target, weight, dofs)
 
 
 @dataclass(frozen=True, slots=True)
