@@ -87,7 +87,7 @@ def opening(name: str, seconds: float, whole_body: bool) -> Motion:
     """The first seconds of a score as a controller is asked for them."""
     motion = enpointe.perform(name, controller="kinematic").motion
     if whole_body:
-        motion = reference(motion, "wholebody")
+        motion, _ = reference(motion, "wholebody")
     first = motion.time <= seconds
     parts = (motion.time, motion.qpos, motion.qvel, motion.qacc)
     return Motion(motion.model, *(part[first] for part in parts), name=name)

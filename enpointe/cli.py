@@ -364,6 +364,9 @@ def doctor(
 
 def main() -> None:
     """Run the command line; the one place where an error becomes a line and an exit code."""
+    # Before numpy is there to read it. A body's matrices are too small to be shared by threads,
+    # which wait for each other at full speed.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     sys.exit(_run(sys.argv[1:]))
 
 

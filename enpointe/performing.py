@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -74,7 +75,7 @@ class Performance:
         """The score as it is written."""
         return self.choreography.written
 
-    @property
+    @cached_property
     def danced(self) -> Motion:
         """What was really danced: the recording as a motion, or the motion itself."""
         return self.motion if self.recording is None else self.recording.as_motion()

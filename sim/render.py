@@ -41,7 +41,8 @@ NO_OPENGL = (
 PROBE = """
 import mujoco
 model = mujoco.MjModel.from_xml_string(
-    '<mujoco><worldbody><light pos="0 0 3"/><geom size="1"/></worldbody></mujoco>')
+    '<mujoco><visual><quality shadowsize="64"/><global offwidth="16" offheight="16"/></visual>'
+    '<worldbody><light pos="0 0 3"/><geom size="1"/></worldbody></mujoco>')
 data = mujoco.MjData(model)
 mujoco.mj_forward(model, data)
 with mujoco.Renderer(model, 16, 16) as renderer:
@@ -90,7 +91,8 @@ class Painter(Protocol):
 
 def _draws(backend: str) -> bool:
     """Whether a fresh interpreter can draw a picture with this backend."""
-    environment = {**os.environ, "MUJOCO_GL": backend}
+    # Threads that numpy's linear algebra would start cost more than the picture.
+    environment = {**os.environ, "MUJOCO_GL": backend, "OPENBLAS_NUM_THREADS": "1"}
     try:
         probe = subprocess.run(
             [sys.executable, "-P", "-c", PROBE],
@@ -241,8 +243,7 @@ class GLPainter(Painter):
         self._data = mujoco.MjData(self._model)
         self._floor = floor_height(model)
         visual = self._model.vis
-        visual.global_.offwidth = max(width, visual.global_.offwidth)
-        visual.global_.offheight = max(height, visual.global_.offheight)
+        visual.global_.offwidth, visual.global_.offheight = width, height
         visual.quality.offsamples = 4 if quality == "fine" else 0
         visual.quality.shadowsize = 2048 if quality == "fine" else 1
         self._option = mujoco.MjvOption()
