@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from enpointe.checking import check as check
     from enpointe.comparing import Comparison as Comparison
     from enpointe.comparing import compare as compare
+    from enpointe.converting import Conversion as Conversion
+    from enpointe.converting import convert as convert
     from enpointe.doctor import diagnose as diagnose
     from enpointe.errors import EnpointeError as EnpointeError
     from enpointe.notating import Notation as Notation
@@ -37,12 +39,14 @@ __version__ = "0.1.0"
 _HOMES = {
     "Check": "enpointe.checking",
     "Comparison": "enpointe.comparing",
+    "Conversion": "enpointe.converting",
     "EnpointeError": "enpointe.errors",
     "Notation": "enpointe.notating",
     "Performance": "enpointe.performing",
     "Poses": "enpointe.posing",
     "check": "enpointe.checking",
     "compare": "enpointe.comparing",
+    "convert": "enpointe.converting",
     "diagnose": "enpointe.doctor",
     "load_score": "enpointe.notation",
     "notate": "enpointe.notating",
@@ -57,6 +61,7 @@ _HOMES = {
 __all__ = [
     "Check",
     "Comparison",
+    "Conversion",
     "EnpointeError",
     "Notation",
     "Performance",
@@ -65,6 +70,7 @@ __all__ = [
     "__version__",
     "check",
     "compare",
+    "convert",
     "diagnose",
     "load_score",
     "notate",

@@ -3,28 +3,53 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import degrees
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from enpointe.notation import Score, load_score
 from enpointe.performing import perform
 from enpointe.preparing import Progress, silent
+from enpointe.stored import is_stored, load_stored
 
 if TYPE_CHECKING:
     from enpointe.models import Anthropometry, Style
     from enpointe.motion import Motion
+    from enpointe.motion.contact_schedule import ContactSchedule
     from enpointe.sim.motion_check import MotionCheck
 
-__all__ = ["Check", "check"]
+__all__ = ["Check", "Clock", "check"]
 
 HELP_MAX = 0.05
 """Of body weight: with more invisible help than this, rms, a movement is not one that can be
 danced."""
 SLIP_MAX, PENETRATION_MAX = 0.01, 0.01
 """m: a foot that slides or sinks farther shows."""
+MEASURED = 0.15
+"""s over which a captured movement is averaged before it is differentiated twice: what is slower
+than 6 Hz stays, as is usual for human movement (Winter 2009, section 3.5.2)."""
+FASTEST = 5
+"""Joints whose speed is told."""
 BEYOND_MAX = 0.5
 """Degrees: what the eye forgives a joint beyond its range."""
+
+
+@dataclass(frozen=True, slots=True)
+class Clock:
+    """How a file counts its frames.
+
+    Attributes:
+        rate: Frames per second.
+        first: Number of its first frame.
+    """
+
+    rate: float
+    first: int = 0
+
+    def frame(self, time: float) -> int:
+        """The frame at, or next to, `time` seconds."""
+        return self.first + round(time * self.rate)
 
 
 @dataclass(frozen=True)
@@ -34,10 +59,16 @@ class Check:
     Attributes:
         name: Of the movement.
         found: All that was measured.
+        clock: How the file counts its frames; the samples of the movement, from 0, without a file.
+        warnings: What was doubtful in the file and how it was taken, one line each.
+        contacts: Which soles stand and when, where the capture says it.
     """
 
     name: str
     found: MotionCheck
+    clock: Clock
+    warnings: tuple[str, ...] = ()
+    contacts: ContactSchedule | None = None
 
     @property
     def faults(self) -> tuple[str, ...]:
@@ -65,6 +96,9 @@ class Check:
             "name": self.name,
             "faults": list(self.faults),
             "duration": found.motion.duration,
+            "rate": self.clock.rate,
+            "first_frame": self.clock.first,
+            "warnings": list(self.warnings),
             "support_margin_min": found.support_margin_min,
             "zmp_outside_fraction": found.zmp_outside_fraction,
             "contacts": {
@@ -78,6 +112,18 @@ class Check:
                 {"start": f.start, "end": f.end, "height": f.height, "turn_deg": f.turn_deg}
                 for f in found.flights
             ],
+            "ballistics": [
+                {
+                    "start": b.start,
+                    "end": b.end,
+                    "rise": b.rise,
+                    "rise_free": b.rise_free,
+                    "fall": b.fall,
+                    "off_path": b.off_path,
+                    "momentum_change": b.momentum_change,
+                }
+                for b in found.ballistics
+            ],
             "turns": [
                 {"start": t.start, "end": t.end, "revolutions": t.revolutions} for t in found.turns
             ],
@@ -85,8 +131,43 @@ class Check:
                 {"joint": b.joint, "time": b.time, "beyond_deg": b.beyond_deg}
                 for b in found.breaches
             ],
+            "joint_speeds": [
+                {"joint": v.joint, "time": v.time, "deg_per_s": degrees(v.speed)}
+                for v in found.speeds[:FASTEST]
+            ],
             "root_wrench_rms": found.root_wrench_rms,
+            "impossible": [
+                {
+                    "start": h.start,
+                    "end": h.end,
+                    "first_frame": self.clock.frame(h.start),
+                    "last_frame": self.clock.frame(h.end),
+                    "help": h.most,
+                    "why": h.why,
+                }
+                for h in found.help
+            ],
         }
+
+    def save_corrected(self, path: Path, progress: Progress = silent) -> Path:
+        """Write the movement as BVH, with its weight where the feet that stand can hold it.
+
+        The feet keep their places and the file its rate; see `make_danceable`.
+
+        Raises:
+            FormatError: It can't be written there.
+        """
+        from enpointe.motion.danceable import make_danceable
+        from enpointe.motion.formats import write
+        from enpointe.motion.formats.of_dancer import skeleton_of_motion
+
+        corrected = make_danceable(
+            self.found.motion,
+            contacts=self.contacts,
+            progress=lambda done, total: progress("correcting", done, total),
+        )
+        write(skeleton_of_motion(corrected.motion)[0], path)
+        return path
 
     def lines(self) -> Sequence[tuple[str, str]]:
         """The same for people: what, and its value in words."""
@@ -111,6 +192,14 @@ class Check:
             for f in found.flights
         ]
         rows += [
+            (
+                "in free fall it would be",
+                f"{_mm(b.rise_free)} up; it falls with {b.fall:.1f} m/s²,"
+                f" {_mm(b.off_path)} off its path at most",
+            )
+            for b in found.ballistics
+        ]
+        rows += [
             ("turn", f"{t.start:.2f}–{t.end:.2f} s, {t.revolutions:+.2f} revolutions")
             for t in found.turns
         ]
@@ -118,7 +207,19 @@ class Check:
             ("beyond its range", f"{b.joint} by {b.beyond_deg:.1f}° at {b.time:.2f} s")
             for b in found.breaches
         ]
+        rows += [
+            ("fastest joint", f"{v.joint}, {degrees(v.speed):.0f}°/s at {v.time:.2f} s")
+            for v in found.speeds[:1]
+        ]
         rows.append(("invisible help, rms", f"{found.root_wrench_rms:.1f} N"))
+        rows += [
+            (
+                f"frames {self.clock.frame(h.start)}–{self.clock.frame(h.end)}",
+                f"{h.most:.0f} N of help: {h.why}",
+            )
+            for h in found.help
+        ]
+        rows += [("warning", warning) for warning in self.warnings]
         rows.append(("answer", "; ".join(self.faults) or "a body could do this"))
         return [(what, said or "never") for what, said in rows]
 
@@ -134,17 +235,20 @@ def check(
     tempo: float | None = None,
     style: Style | None = None,
     dancer: Anthropometry | None = None,
+    mapping: str | Path | None = None,
     progress: Progress = silent,
 ) -> Check:
-    """Look at balance and foot contact of a movement of the dancer, without physics.
+    """Look at balance and foot contact of a movement, without physics.
 
     Args:
-        source: A motion; a file of one or of a performance (`.npz`, as `enpointe perform` writes
-            them); or a score, whose movement is looked at as it is composed.
+        source: A motion; a motion file of any format, which is put on the dancer first; a file of
+            the dancer's own, as `enpointe perform` writes them; or a score, whose movement is
+            looked at as it is composed.
         effort: As for `perform`; of a score alone.
         tempo: As for `perform`; of a score alone.
         style: The method's amounts; of a score alone.
         dancer: Height, mass and sex; a dancer of 1.68 m and 54 kg if None.
+        mapping: Which joints of a captured skeleton are which, as a TOML file; found if None.
         progress: Told how far it is.
 
     Raises:
@@ -156,12 +260,16 @@ def check(
         >>> enpointe.check("first-port-de-bras").faults
         ()
     """
-    if isinstance(source, str | Path) and Path(source).suffix == ".npz":
-        motion = _stored(Path(source), dancer)
+    clock: Clock | None = None
+    warnings: tuple[str, ...] = ()
+    contacts: ContactSchedule | None = None
+    if isinstance(source, str | Path) and is_stored(Path(source)):
+        motion = load_stored(Path(source), dancer)
+    elif isinstance(source, str | Path) and _is_capture(Path(source)):
+        motion, clock, warnings, contacts = _captured(Path(source), dancer, mapping, progress)
     elif isinstance(source, str | Path | Score):
-        score = source if isinstance(source, Score) else load_score(source)
         motion = perform(
-            score,
+            source if isinstance(source, Score) else load_score(source),
             effort=effort,
             tempo=tempo,
             controller="kinematic",
@@ -174,17 +282,29 @@ def check(
     from enpointe.sim.motion_check import check_motion
 
     progress("looking", 0, 1)
-    found = check_motion(motion)
+    found = check_motion(motion, contacts, averaged_over=0.0 if clock is None else MEASURED)
     progress("looking", 1, 1)
-    return Check(motion.name, found)
+    clock = clock or Clock((len(motion.time) - 1) / motion.duration)
+    return Check(motion.name, found, clock, warnings, contacts)
 
 
-def _stored(path: Path, dancer: Anthropometry | None) -> Motion:
-    from enpointe.controllers import Recording
+def _is_capture(path: Path) -> bool:
+    return path.is_file() and path.suffix != ".bmn"
+
+
+def _captured(
+    path: Path, dancer: Anthropometry | None, mapping: str | Path | None, progress: Progress
+) -> tuple[Motion, Clock, tuple[str, ...], ContactSchedule]:
     from enpointe.models.dancer import dancer_model
-    from enpointe.motion.npz import is_motion, load_motion
+    from enpointe.motion.formats import read
+    from enpointe.motion.retargeting import retarget
 
-    model = dancer_model(dancer, flesh=False)
-    if is_motion(path):
-        return load_motion(path, model)
-    return Recording.load(path, model).as_motion()
+    content = read(path)
+    done = retarget(
+        content,
+        dancer_model(dancer, flesh=False),
+        mapping=mapping,
+        progress=lambda done, total: progress("putting it on the dancer", done, total),
+    )
+    clock = Clock(getattr(content.motion, "rate", 0.0), int(getattr(content.motion, "start", 0)))
+    return replace(done.motion, name=path.stem), clock, done.warnings, done.contacts

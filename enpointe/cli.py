@@ -20,13 +20,13 @@ from enpointe.options import (
     OutputOptions,
     Quiet,
     Score,
-    Seed,
     SeededOutputOptions,
     StyledDancerOptions,
     Tempo,
     Video,
     unbundled,
 )
+from enpointe.servo_verbs import servo_verbs
 
 __all__ = ["app", "main"]
 
@@ -40,6 +40,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
+app.add_typer(servo_verbs)
 
 
 class ControllerName(StrEnum):
@@ -209,20 +210,32 @@ def check(
     source: Annotated[
         str,
         typer.Argument(
-            help="A motion or a recording (.npz, as perform writes them), a shipped score's name,"
-            " or a .bmn file."
+            help="A motion file of any format that convert reads, put on the dancer first; a motion"
+            " or a recording of hers (.npz); a shipped score's name, or a .bmn file."
         ),
     ],
     *,
     effort: Effort = None,
     tempo: Tempo = None,
+    mapping: Annotated[
+        Path | None,
+        typer.Option("--map", help="Which joints of the file are which, as a TOML file."),
+    ] = None,
+    correct: Annotated[
+        bool,
+        typer.Option(
+            help="Also write corrected.bvh: the same movement with its weight where the feet can"
+            " hold it."
+        ),
+    ] = False,
     dancer: StyledDancerOptions,
-    json: Json = False,
-    quiet: Quiet = False,
-    seed: Seed = 0,
+    output: OutputOptions,
 ) -> int:
     """Look at balance and foot contact of a movement, without dancing it."""
-    console = Console(json=json, quiet=quiet)
+    from enpointe.report.checks import write_check
+
+    console = output.console()
+    folder = output.folder(f"{Path(source).stem}-checked")
     with console.progress() as progress:
         found = enpointe.check(
             source,
@@ -230,12 +243,17 @@ def check(
             tempo=tempo,
             style=dancer.style(),
             dancer=dancer.anthropometry(),
+            mapping=mapping,
             progress=progress,
         )
-    if json:
-        console.print_json(found.summary())
+        files = write_check(found, folder)
+        if correct:
+            files["corrected"] = found.save_corrected(folder / "corrected.bvh", progress)
+    if output.json:
+        console.show(found.summary(), files, folder)
     else:
         console.print(rows(found.lines()))
+        console.print(f"report: {files['report']}")
     return NO if found.faults else DONE
 
 
@@ -301,46 +319,6 @@ def sweep(
         files = {**write_sweep(swept, folder, mapped), **swept.save(folder)}
     console.show(swept.summary(), files, folder)
     return DONE if swept.completed_fraction >= at_least else NO
-
-
-@app.command("fake-bus")
-def fake_bus(
-    source: Annotated[
-        Path | None,
-        typer.Argument(help="A bus described in TOML; servos all alike if left out."),
-    ] = None,
-    *,
-    servos: Annotated[int, typer.Option(help="How many, from ID 1.")] = 25,
-    model: Annotated[str, typer.Option(help="Of the servos.")] = "XM430-W350",
-    baud: Annotated[int, typer.Option(help="Of the servos, bit/s.")] = 1_000_000,
-    faults: Annotated[
-        Path | None, typer.Option(help="What goes wrong, a fault script in TOML.")
-    ] = None,
-    json: Json = False,
-    quiet: Quiet = False,
-    seed: Annotated[int, typer.Option(help="Seed of the faults.")] = 0,
-) -> int:
-    """Be a bus of Dynamixel servos on a pseudo-terminal, until Ctrl-C."""
-    from enpointe.hardware.emulator import BusDescription, load_bus, load_faults
-    from enpointe.hardware.emulator.terminal import serve
-
-    console = Console(json=json, quiet=quiet)
-    if source is None:
-        bus = BusDescription.alike(servos, model, baud=baud)
-    else:
-        bus = load_bus(source)
-    script = () if faults is None else load_faults(faults)
-
-    def opened(port: str) -> None:
-        ids = [servo.id for servo in bus.servos]
-        if json:
-            console.print_json({"port": port, "baud": bus.baud, "ids": ids})
-        else:
-            console.print(f"{port}: {len(ids)} servos at {bus.baud} bit/s; Ctrl-C ends it")
-        sys.stdout.flush()
-
-    serve(bus, script, seed, opened)
-    return DONE
 
 
 @app.command()

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from enpointe.models import Anthropometry, Style
 
 __all__ = [
+    "ConversionOptions",
     "DancerOptions",
     "Effort",
     "Json",
@@ -92,6 +93,28 @@ class StyledDancerOptions(DancerOptions):
         from enpointe.models.style import Style
 
         return Style(turnout_deg=self.turnout, real=self.dancer is DancerName.REAL)
+
+
+@dataclass(frozen=True)
+class ConversionOptions:
+    """How a motion file is read, and how another is written."""
+
+    to: Annotated[
+        str | None, typer.Option(metavar="FORMAT", help="The format of OUT, whatever its ending.")
+    ] = None
+    rate: Annotated[
+        float | None, typer.Option(help="Frames a second to write; those of IN if left out.")
+    ] = None
+    source_rate: Annotated[
+        float | None, typer.Option(help="Frames a second of IN, where its file does not say.")
+    ] = None
+    skeleton: Annotated[
+        Path | None, typer.Option(help="The ASF file of an AMC file, where it lies elsewhere.")
+    ] = None
+    unit: Annotated[str | None, typer.Option(help="Of the lengths in OUT: m, cm, mm or in.")] = None
+    names: Annotated[
+        Path | None, typer.Option(help="An MNM file with other names for joints or markers.")
+    ] = None
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,10 @@ if TYPE_CHECKING:
     from enpointe.motion.kind import Interpolation as Interpolation
     from enpointe.motion.motion import Event as Event
     from enpointe.motion.motion import Motion as Motion
+    from enpointe.motion.retargeting.joint_map import JointMap as JointMap
+    from enpointe.motion.retargeting.proposing import propose_map as propose_map
+    from enpointe.motion.retargeting.retargeting import Retargeted as Retargeted
+    from enpointe.motion.retargeting.retargeting import retarget as retarget
     from enpointe.motion.wrist import fit_logistic as fit_logistic
     from enpointe.motion.wrist import wrist_profiles as wrist_profiles
 
@@ -28,13 +32,17 @@ _HOMES = {
     "Effort": "enpointe.motion.effort",
     "Event": "enpointe.motion.motion",
     "Interpolation": "enpointe.motion.kind",
+    "JointMap": "enpointe.motion.retargeting.joint_map",
     "Motion": "enpointe.motion.motion",
     "PRESETS": "enpointe.motion.effort",
+    "Retargeted": "enpointe.motion.retargeting.retargeting",
     "RuleKept": "enpointe.motion.keeping",
     "find_effort": "enpointe.motion.effort",
     "fit_logistic": "enpointe.motion.wrist",
     "interpolate": "enpointe.motion.interpolation",
     "logistic": "enpointe.motion.effort",
+    "propose_map": "enpointe.motion.retargeting.proposing",
+    "retarget": "enpointe.motion.retargeting.retargeting",
     "rules_kept": "enpointe.motion.keeping",
     "solve_key_poses": "enpointe.motion.interpolation",
     "wrist_profiles": "enpointe.motion.wrist",
@@ -47,12 +55,16 @@ __all__ = [
     "Effort",
     "Event",
     "Interpolation",
+    "JointMap",
     "Motion",
+    "Retargeted",
     "RuleKept",
     "find_effort",
     "fit_logistic",
     "interpolate",
     "logistic",
+    "propose_map",
+    "retarget",
     "rules_kept",
     "solve_key_poses",
     "ways_of",

@@ -17,7 +17,7 @@ from scipy.ndimage import binary_closing, binary_opening
 from enpointe.models.soles import sole_geoms, sole_points
 from enpointe.motion.motion import Motion
 
-__all__ = ["ContactSchedule", "contact_schedule"]
+__all__ = ["ContactSchedule", "contact_schedule", "trace_soles", "without_chatter"]
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -65,15 +65,16 @@ def contact_schedule(motion: Motion) -> ContactSchedule:
     """Plan the contacts of a motion from its heights and speeds."""
     model = motion.model
     soles = sole_geoms(model)
-    points = _trace(motion, soles)
+    points = trace_soles(motion, soles)
     speed = np.linalg.norm(np.gradient(points[:, :, :2], motion.time, axis=0), axis=2)
     down = points[:, :, 2] < ON_FLOOR
-    planted = _without_chatter(down & (speed < AT_REST), float(np.median(np.diff(motion.time))))
+    planted = without_chatter(down & (speed < AT_REST), float(np.median(np.diff(motion.time))))
     planted = _held_over(planted, down)
     return ContactSchedule(motion.time, soles, points, _stood_on(model, soles, planted))
 
 
-def _trace(motion: Motion, soles: NDArray[np.int64]) -> Array:
+def trace_soles(motion: Motion, soles: NDArray[np.int64]) -> Array:
+    """Lowest points (T, S, 3) of some soles over a motion, m."""
     data = mujoco.MjData(motion.model)
     points = np.empty((len(motion.time), len(soles), 3))
     for row, qpos in zip(points, motion.qpos, strict=True):
@@ -83,7 +84,8 @@ def _trace(motion: Motion, soles: NDArray[np.int64]) -> Array:
     return points
 
 
-def _without_chatter(planted: Mask, period: float) -> Mask:
+def without_chatter(planted: Mask, period: float) -> Mask:
+    """Contacts (T, S) without those, and without gaps, that are shorter than `SHORTEST`."""
     width = max(round(SHORTEST / period), 1)
     window = np.ones((width, 1), dtype=bool)
     padded = np.pad(planted, ((width, width), (0, 0)), mode="edge")

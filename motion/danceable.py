@@ -82,15 +82,19 @@ class Danceable:
 
 
 def make_danceable(
-    motion: Motion, *, progress: Callable[[int, int], None] | None = None
+    motion: Motion,
+    *,
+    contacts: ContactSchedule | None = None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> Danceable:
     """Make a motion that gravity and the floor allow.
 
     Args:
         motion: As composed.
+        contacts: What stands and when, where somebody knows; read from the motion otherwise.
         progress: Called with (done, all) now and then.
     """
-    contacts = contact_schedule(motion)
+    contacts = contact_schedule(motion) if contacts is None else contacts
     rate = 1.0 / float(np.median(np.diff(motion.time)))
     soft = Motion.from_qpos(
         motion.model, motion.time, averaged_qpos(motion.qpos, _MUSCLE, rate), name=motion.name

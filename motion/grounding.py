@@ -24,7 +24,7 @@ from enpointe.models.figure import Figure
 from enpointe.models.leg_target import LEG_JOINTS, OnPointe, Standing
 from enpointe.notation import Side
 
-__all__ = ["Contact", "ground"]
+__all__ = ["Contact", "fade_in_and_out", "ground"]
 
 Array = NDArray[np.float64]
 Contact = Standing | OnPointe | None
@@ -64,9 +64,9 @@ def ground(
         if any(now.values()):
             _correct(model, data, placed[i], feet, now)
     for side, foot in feet.items():
-        _fade(time, qpos, placed, foot.addresses, np.array(standing[side]))
+        fade_in_and_out(time, qpos, placed, foot.addresses, np.array(standing[side]))
     either = np.logical_or(*(np.array(standing[side]) for side in Side))
-    _fade(time, qpos, placed, np.arange(3), either)
+    fade_in_and_out(time, qpos, placed, np.arange(3), either)
     for i in range(len(time)):
         _correct(model, data, placed[i], feet, {side: contacts[side][i] for side in Side})
     return placed
@@ -165,14 +165,22 @@ def _correct(
         qpos[addresses] = np.clip(moved, low, high)
 
 
-def _fade(
+def fade_in_and_out(
     time: Array,
     before: Array,
     after: Array,
     addresses: NDArray[np.int64],
     standing: NDArray[np.bool_],
 ) -> None:
-    """Let the correction of some coordinates fade where no foot stands that would keep it."""
+    """Let the correction of some coordinates fade where no foot stands that would keep it.
+
+    Args:
+        time: (T,), s.
+        before: (T, nq), as it was.
+        after: (T, nq), as corrected where a foot stands; changed in place elsewhere.
+        addresses: Of the coordinates, in qpos.
+        standing: (T,), where.
+    """
     change = after[:, addresses] - before[:, addresses]
     kept = np.flatnonzero(standing)
     if not kept.size:

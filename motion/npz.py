@@ -119,13 +119,20 @@ def load_arrays(path: Path, expected: str) -> dict[str, NDArray[np.generic]]:
 
 
 def _opened(path: Path) -> dict[str, NDArray[np.generic]]:
+    where = ""
     try:
-        with np.load(path, allow_pickle=False) as stored:
-            return {name: stored[name] for name in stored.files}
+        # Opened here, as numpy leaves a file open that it can't read.
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as stored:
+            arrays = {}
+            for where in stored.files:
+                arrays[where] = stored[where]
+            return arrays
     except FileNotFoundError:
         raise FormatError("there is no such file", path) from None
     except Exception as error:  # numpy and zipfile raise many kinds on damaged files
-        raise FormatError(f"not an NPZ file that can be read ({error})", path) from None
+        what = f"its {where}: {error}" if where else str(error)
+        line = " ".join(what.split())
+        raise FormatError(f"not an NPZ file that can be read ({line})", path) from None
 
 
 def _stated(arrays: Arrays) -> str:

@@ -19,12 +19,15 @@ from enpointe.controllers import FeedForward
 from enpointe.controllers.plant import Plant
 from enpointe.models.soles import sole_points
 from enpointe.motion import Motion
+from enpointe.motion.averaging import averaged_qpos
 from enpointe.motion.contact_schedule import ContactSchedule, contact_schedule
 from enpointe.sim import balance
+from enpointe.sim.ballistics import Ballistics, ballistics
 from enpointe.sim.feet import SIDES, FootState, foot_states
+from enpointe.sim.impossible import Help, spans_of_help
 from enpointe.sim.measures import Flight, find_flights, heading
 
-__all__ = ["FootContact", "LimitBreach", "MotionCheck", "Turn", "check_motion"]
+__all__ = ["FootContact", "JointSpeed", "LimitBreach", "MotionCheck", "Turn", "check_motion"]
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -37,6 +40,8 @@ SHORTEST_TURN = 0.125
 """Revolutions: less is a change of facing."""
 BEYOND = np.radians(0.1)
 """A joint this far beyond its range, rad, is there by more than rounding."""
+HELP_MAX = 0.05
+"""Of body weight: what is missing below this is the noise of what was measured or drawn."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +89,21 @@ class LimitBreach:
     beyond_deg: float
 
 
+@dataclass(frozen=True, slots=True)
+class JointSpeed:
+    """How fast a joint is at its fastest.
+
+    Attributes:
+        joint: Its name.
+        time: s.
+        speed: rad/s.
+    """
+
+    joint: str
+    time: float
+    speed: float
+
+
 @dataclass(frozen=True)
 class MotionCheck:
     """What was found; T samples, S soles.
@@ -100,10 +120,13 @@ class MotionCheck:
         penetration_max: Deepest that anything is in the floor, m.
         overlap_max: Deepest that limbs are in one another, m.
         flights: In order.
+        ballistics: Each flight that is long enough beside free fall, in order.
         turns: In order.
         breaches: The joints beyond their ranges, worst first.
+        speeds: Every joint at its fastest, fastest first.
         root_wrench: (N,), what of the force and moment on the root the floor could not give, N
             (moments over 1 m), 50 times a second.
+        help: When that is more than a twentieth of body weight, and why.
     """
 
     motion: Motion
@@ -115,9 +138,12 @@ class MotionCheck:
     penetration_max: float
     overlap_max: float
     flights: tuple[Flight, ...]
+    ballistics: tuple[Ballistics, ...]
     turns: tuple[Turn, ...]
     breaches: tuple[LimitBreach, ...]
+    speeds: tuple[JointSpeed, ...]
     root_wrench: Array
+    help: tuple[Help, ...]
 
     @property
     def support_margin_min(self) -> float | None:
@@ -140,14 +166,20 @@ class MotionCheck:
         return float(np.sqrt(np.mean(self.root_wrench**2)))
 
 
-def check_motion(motion: Motion) -> MotionCheck:
+def check_motion(
+    motion: Motion, contacts: ContactSchedule | None = None, *, averaged_over: float = 0.0
+) -> MotionCheck:
     """Look at a movement of the dancer.
 
     Args:
         motion: Evenly sampled.
+        contacts: What stands and when, where somebody knows; read from the movement otherwise.
+        averaged_over: s; forces and momentum are those of the movement averaged over this window,
+            since two differences of what was measured are mostly noise (Winter 2009, section 3.5).
     """
-    contacts = contact_schedule(motion)
-    body = _Movement.of(motion)
+    contacts = contact_schedule(motion) if contacts is None else contacts
+    steady = _averaged(motion, averaged_over) if averaged_over > 0.0 else motion
+    body = _Movement.of(motion, steady)
     # Every sole that stands counts alike: the movement does not say how it shares the weight.
     forces = np.zeros((*contacts.bears.shape, 3))
     forces[:, :, 2] = np.where(contacts.bears, body.weight, 0.0)
@@ -155,6 +187,10 @@ def check_motion(motion: Motion) -> MotionCheck:
     aloft = np.asarray(~contacts.bears.any(axis=1))
     zmp = _margins(hulls, body.zmp)
     zmp[aloft] = np.nan
+    flights = find_flights(motion.time, motion.qpos, body.com, aloft)
+    gravity = float(-motion.model.opt.gravity[2])
+    free = (ballistics(f, motion.time, body.com, body.momentum, gravity) for f in flights)
+    wanted = FeedForward.along(steady)
     return MotionCheck(
         motion=motion,
         com_margin=_margins(hulls, body.com[:, :2]),
@@ -164,11 +200,21 @@ def check_motion(motion: Motion) -> MotionCheck:
         slip_max=float(balance.slip(contacts.points, forces).max(initial=0.0)),
         penetration_max=body.penetration,
         overlap_max=body.overlap,
-        flights=find_flights(motion.time, motion.qpos, body.com, aloft),
+        flights=flights,
+        ballistics=tuple(flight for flight in free if flight is not None),
         turns=_turns(motion),
         breaches=_breaches(motion),
-        root_wrench=FeedForward.along(motion).shortfall,
+        speeds=_speeds(motion),
+        root_wrench=wanted.shortfall,
+        help=spans_of_help(
+            wanted.time, wanted.shortfall, HELP_MAX * body.weight, motion.time, aloft, zmp
+        ),
     )
+
+
+def _averaged(motion: Motion, window: float) -> Motion:
+    rate = 1.0 / float(np.median(np.diff(motion.time)))
+    return Motion.from_qpos(motion.model, motion.time, averaged_qpos(motion.qpos, window, rate))
 
 
 @dataclass(frozen=True)
@@ -176,6 +222,7 @@ class _Movement:
     """The body's masses along a motion, (T, ...), and how deep it is in the floor and in itself."""
 
     com: Array
+    momentum: Array
     xcom: Array
     zmp: Array
     weight: float
@@ -183,17 +230,20 @@ class _Movement:
     overlap: float
 
     @classmethod
-    def of(cls, motion: Motion) -> _Movement:
+    def of(cls, motion: Motion, steady: Motion) -> _Movement:
+        """Depths of the motion itself, masses of what it is averaged to."""
         plant = Plant(motion.model)
         data = plant.data
         com, velocity, momentum = np.empty((3, len(motion.time), 3))
         depths = np.zeros(2)
-        for i, (qpos, qvel) in enumerate(zip(motion.qpos, motion.qvel, strict=True)):
-            plant.place(qpos, qvel)
+        for i, qpos in enumerate(motion.qpos):
+            plant.place(qpos, motion.qvel[i])
+            np.maximum(depths, _depths(plant), out=depths)
+            if steady is not motion:
+                plant.place(steady.qpos[i], steady.qvel[i])
             mujoco.mj_subtreeVel(plant.model, data)
             com[i], velocity[i] = data.subtree_com[0], data.subtree_linvel[0]
             momentum[i] = data.subtree_angmom[0]
-            np.maximum(depths, _depths(plant), out=depths)
         acceleration, rate = (np.gradient(v, motion.time, axis=0) for v in (velocity, momentum))
         zmp = [
             balance.zero_moment_point(c, a, r, plant.mass, plant.gravity)
@@ -204,7 +254,8 @@ class _Movement:
             for c, v in zip(com, velocity, strict=True)
         ]
         weight = plant.mass * plant.gravity
-        return cls(com, np.array(xcom), np.array(zmp), weight, float(depths[0]), float(depths[1]))
+        deep, within = float(depths[0]), float(depths[1])
+        return cls(com, momentum, np.array(xcom), np.array(zmp), weight, deep, within)
 
 
 def _depths(plant: Plant) -> tuple[float, float]:
@@ -273,3 +324,14 @@ def _breaches(motion: Motion) -> tuple[LimitBreach, ...]:
             name, degrees = model.joint(int(joint)).name, float(np.degrees(beyond[worst]))
             breaches.append(LimitBreach(name, float(motion.time[worst]), degrees))
     return tuple(sorted(breaches, key=lambda breach: -breach.beyond_deg))
+
+
+def _speeds(motion: Motion) -> tuple[JointSpeed, ...]:
+    model = motion.model
+    fastest = []
+    for joint in np.flatnonzero(model.jnt_type == mujoco.mjtJoint.mjJNT_HINGE):
+        speed = np.abs(motion.qvel[:, model.jnt_dofadr[joint]])
+        worst = int(np.argmax(speed))
+        name = model.joint(int(joint)).name
+        fastest.append(JointSpeed(name, float(motion.time[worst]), float(speed[worst])))
+    return tuple(sorted(fastest, key=lambda each: -each.speed))

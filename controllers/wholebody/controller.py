@@ -43,7 +43,7 @@ PERIOD = 0.002
 """s between commands: 500 Hz. Trials held alike from 100 to 1000 Hz."""
 FRICTION = 0.6
 """Planned below the floor's friction of 1, as a dancer does not count on the last of it: the least
-of the floors that a sweep draws. With 0.7 she slid on those, where weight passes from foot to foot."""
+of the floors that a sweep draws. With 0.7 she slid there, where weight goes from foot to foot."""
 DEFAULT_TASKS: tuple[Task, ...] = (
     CentreOfMass(),
     AngularMomentum(),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -22,19 +21,13 @@ from enpointe.report.chart import (
     thinned,
     to_svg,
 )
+from enpointe.report.timeline import STRENGTH
 from enpointe.sim.feet import FootState, foot_states
 from enpointe.sim.measures import Measures
 
 __all__ = ["force_chart"]
 
 Array = NDArray[np.float64]
-_STRENGTH: Mapping[FootState, float] = {
-    FootState.FLAT: 0.3,
-    FootState.DEMI_POINTE: 0.6,
-    FootState.POINTE: 0.95,
-    FootState.HEEL: 0.15,
-}
-"""How strongly a foot's bar is coloured: the more she rises the stronger."""
 _NAMED = 0.055
 """A bar shorter than this share of the dance is too short for its name."""
 
@@ -95,7 +88,7 @@ def _draw_feet(axes: Axes, recording: Recording) -> None:
             if state is FootState.AIR:
                 continue
             since, until = (float(recording.time[min(i, len(states) - 1)]) for i in (start, begun))
-            strength = _STRENGTH[state]
+            strength = STRENGTH[state]
             axes.barh(row, until - since, 0.78, since, color=colour, alpha=strength, linewidth=0.0)
             if until - since > _NAMED * end * len(state) / len("flat"):
                 ink = "white" if strength > 0.8 else INK

@@ -16,10 +16,10 @@ from typing import Any
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from enpointe.errors import FormatError
 from enpointe.files import write_bytes
+from enpointe.motion.formats.bodies import relative
 from enpointe.motion.formats.shapes import Surface, surfaces
 from enpointe.motion.motion import Motion
 
@@ -145,7 +145,7 @@ class _Scene:
 
     def _animate(self, motion: Motion) -> None:
         times = self._accessor(motion.time.astype("<f4"), "SCALAR", bounds=True)
-        translations, rotations = _relative(motion)
+        translations, rotations = relative(motion)
         samplers: list[dict[str, Any]] = []
         channels: list[dict[str, Any]] = []
         for body in range(1, motion.model.nbody):
@@ -189,26 +189,6 @@ class _Scene:
             accessor["max"] = flat.max(axis=0).astype(float).tolist()
         self._json["accessors"].append(accessor)
         return len(self._json["accessors"]) - 1
-
-
-def _relative(motion: Motion) -> tuple[Array, Array]:
-    """Every body in its parent: translations (T, B, 3) and quaternions x y z w (T, B, 4)."""
-    model, data = motion.model, mujoco.MjData(motion.model)
-    parents = np.asarray(model.body_parentid)
-    translations = np.empty((len(motion.time), model.nbody, 3))
-    rotations = np.empty((len(motion.time), model.nbody, 4))
-    for index, qpos in enumerate(motion.qpos):
-        data.qpos[:] = qpos
-        mujoco.mj_kinematics(model, data)
-        turns = Rotation.from_quat(data.xquat, scalar_first=True)
-        above = turns[parents].inv()
-        translations[index] = above.apply(data.xpos - data.xpos[parents])
-        rotations[index] = (above * turns).as_quat()
-    # Linear interpolation takes the short way only between neighbours on the same side.
-    side = np.sign((rotations[1:] * rotations[:-1]).sum(axis=2))
-    side = np.cumprod(np.where(side == 0, 1, side), axis=0)
-    rotations[1:] *= side[..., None]
-    return translations, rotations
 
 
 def _unit(vectors: Array) -> NDArray[np.float32]:

@@ -69,11 +69,12 @@ def read_keyframes(path: Path, model: mujoco.MjModel) -> Motion:
     time, qpos = np.array(keys.time), np.array(keys.qpos)
     time -= time[0]
     try:
-        if all(row is not None for row in keys.qvel):
-            qvel = np.array(keys.qvel)
-            qacc = np.gradient(qvel, time, axis=0) if (np.diff(time) > 0).all() else qvel
-            return Motion(model, time, qpos, qvel, qacc, name=keys.name)
-        return Motion.from_qpos(model, time, qpos, name=keys.name)
+        with np.errstate(all="ignore"):  # what is no number is refused with the motion
+            if all(row is not None for row in keys.qvel):
+                qvel = np.array(keys.qvel)
+                qacc = np.gradient(qvel, time, axis=0) if (np.diff(time) > 0).all() else qvel
+                return Motion(model, time, qpos, qvel, qacc, name=keys.name)
+            return Motion.from_qpos(model, time, qpos, name=keys.name)
     except MotionError as error:
         raise FormatError(str(error), path, line=keys.line) from None
 

@@ -23,7 +23,7 @@ from enpointe.motion.formats.skeleton import SkeletonMotion
 from enpointe.motion.formats.trc import TRC
 from enpointe.motion.gesture.scene import Scene
 
-__all__ = ["FORMATS", "formats", "read", "sniffed", "write"]
+__all__ = ["FORMATS", "formats", "read", "sniffed", "writable", "write"]
 
 _HEAD = 4096
 
@@ -91,34 +91,50 @@ def read(path: str | Path) -> Content:
     return sniffed(Path(path)).read(Path(path))
 
 
-def write(payload: Payload, path: str | Path) -> tuple[str, ...]:
-    """Writes a movement in the format that the ending of `path` names.
+def write(payload: Payload, path: str | Path, to: str | None = None) -> tuple[str, ...]:
+    """Writes a movement in the format that the ending of `path` names, or in another.
 
     Args:
         payload: A skeleton's movement, a marker set's or a gesture scene.
         path: Where to.
+        to: Name of the format, whatever the ending.
 
     Returns:
         What the file can't hold, one line each.
 
     Raises:
-        EnpointeError: No format has that ending, or none that holds such a movement.
+        EnpointeError: No format has that name or ending, or none that holds such a movement.
         FormatError: The format can't hold this movement, or the file can't be written there.
     """
     path = Path(path)
-    ending = path.suffix.lower()
-    named = [each for each in FORMATS if ending in each.suffixes and each.write is not None]
-    if not named:
-        known = " ".join(
-            sorted({suffix for each in FORMATS if each.write for suffix in each.suffixes})
-        )
-        raise EnpointeError(f"{path}: no motion format to write ends in {ending!r}; these: {known}")
+    named = writable(path, to)
     kind = _kind(payload)
     # A scene has room for joints and markers too.
     fitting = [each for each in named if each.kind in (kind, "scene")]
     if not fitting or fitting[0].write is None:
         raise EnpointeError(f"{path}: {named[0].name} holds {named[0].kind}, and this is {kind}")
     return fitting[0].write(payload, path)
+
+
+def writable(path: Path, to: str | None = None) -> tuple[Format, ...]:
+    """The formats of that name, or else of the ending of `path`, that can be written.
+
+    Raises:
+        EnpointeError: There is none.
+    """
+    writers = [each for each in FORMATS if each.write is not None]
+    if to is not None:
+        named = [each for each in writers if each.name.lower() == to.strip().lower()]
+        known = ", ".join(each.name for each in writers)
+        problem = f"no motion format to write is called {to!r}; these: {known}"
+    else:
+        ending = path.suffix.lower()
+        named = [each for each in writers if ending in each.suffixes]
+        known = " ".join(sorted({suffix for each in writers for suffix in each.suffixes}))
+        problem = f"{path}: no motion format to write ends in {ending!r}; these: {known}"
+    if not named:
+        raise EnpointeError(problem)
+    return tuple(named)
 
 
 def _kind(payload: Payload) -> Kind:

@@ -34,12 +34,18 @@ class Surface:
     colour: tuple[float, float, float, float]
 
 
-def surfaces(model: mujoco.MjModel, body: int) -> list[Surface]:
-    """What is to be seen of a body, joined by colour: geom groups 0 to 2, planes left out."""
+def surfaces(model: mujoco.MjModel, body: int, *, hidden: bool = False) -> list[Surface]:
+    """What is to be seen of a body, joined by colour: geom groups 0 to 2, planes left out.
+
+    Args:
+        model: Whose body.
+        body: Its index.
+        hidden: What is not to be seen as well, as shapes are that only touch.
+    """
     found: dict[tuple[float, float, float, float], list[Surface]] = {}
     first = int(model.body_geomadr[body])
     for geom in range(first, first + int(model.body_geomnum[body])):
-        surface = _surface(model, geom) if model.geom_group[geom] <= _SHOWN else None
+        surface = _surface(model, geom) if hidden or model.geom_group[geom] <= _SHOWN else None
         if surface is not None:
             found.setdefault(surface.colour, []).append(surface)
     return [_joined(parts) for parts in found.values()]

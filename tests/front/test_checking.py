@@ -24,6 +24,8 @@ FIELDS = {
     "turns",
     "joint_limit_violations",
     "root_wrench_rms",
+    "impossible",
+    "ballistics",
 }
 
 
@@ -33,13 +35,14 @@ def test_a_score_a_motion_and_a_recording_of_it_are_sound(
     dance = enpointe.perform(enpointe.load_score(short))
     files = dance.save(home)
     for source in (short, files["motion"], files["recording"]):
-        assert _run(["check", str(source), "--json"]) == 0
+        assert _run(["check", str(source), "--out", "looked", "--json"]) == 0
         figures = one_object(capfd.readouterr().out)
         assert set(figures) >= FIELDS
         assert figures["faults"] == []
         assert figures["joint_limit_violations"] == []
         assert figures["slip_max"] < 0.005
-    assert sorted(p.name for p in home.iterdir()) == ["balance.csv", "motion.npz", "recording.npz"]
+        assert figures["impossible"] == []
+    assert [p.name for p in (home / "looked").iterdir()] == ["report.html"]
 
 
 def test_a_movement_nobody_can_do_is_answered_with_no(
@@ -52,6 +55,7 @@ def test_a_movement_nobody_can_do_is_answered_with_no(
     out, err = capfd.readouterr()
     assert err == ""
     assert "invisible help" in out
+    assert "in the air, and not falling as bodies fall" in " ".join(out.split())
     assert "never on the floor" in out
 
 
@@ -60,4 +64,4 @@ def test_what_is_no_motion_is_refused(home: Path, capfd: pytest.CaptureFixture[s
     np.savez(home / "other.npz", format=np.array("a diary"))
     assert "expected" in refused(capfd, "check", "other.npz")
     (home / "text.npz").write_text("hello")
-    assert "not an NPZ file" in refused(capfd, "check", "text.npz")
+    assert "no motion file that is known" in refused(capfd, "check", "text.npz")
