@@ -1,20 +1,20 @@
 """A bus written down: which servos, their settings, the supply, what each turns; in TOML.
 
-    baud = 1000000            # of all servos
-    voltage = 12.0            # V; the models' own recommended one if left out
-    resistance = 0.05         # ohm of supply and cables
-    strict = true             # take unstuffed headers for headers
-    latency = 0.0             # s by which the adapter holds answers back
+baud = 1000000            # of all servos
+voltage = 12.0            # V; the models' own recommended one if left out
+resistance = 0.05         # ohm of supply and cables
+strict = true             # take unstuffed headers for headers
+latency = 0.0             # s by which the adapter holds answers back
 
-    [[servo]]
-    id = 1
-    model = "XM430-W350"
-    inertia = 0.002           # kg m^2 beside the rotor's
-    gravity = 0.3             # N m of a weight on a horizontal arm, which hangs at `hanging`
-    hanging = 0.0             # rad
-    angle = 0.1               # rad at first
-    firmware = 52
-    settings = { "Return Delay Time" = 0 }
+[[servo]]
+id = 1
+model = "XM430-W350"
+inertia = 0.002           # kg m^2 beside the rotor's
+gravity = 0.3             # N m of a weight on a horizontal arm, which hangs at `hanging`
+hanging = 0.0             # rad
+angle = 0.1               # rad at first
+firmware = 52
+settings = { "Return Delay Time" = 0 }
 """
 
 from __future__ import annotations
@@ -142,13 +142,14 @@ def load_bus(path: str | Path) -> BusDescription:
     try:
         content = tomllib.loads(Path(path).read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise FormatError(f"no readable TOML: {error}", path) from error
+        reason = getattr(error, "strerror", None) or error
+        raise FormatError(f"no readable TOML: {reason}", path) from error
     try:
         rows = content.pop("servo", [])
         if not isinstance(rows, Sequence) or not rows:
             raise RigError("a bus needs at least one [[servo]]")
         servos = tuple(_entry(ServoDescription, row, f"servo {n}") for n, row in enumerate(rows, 1))
-        found = _entry(BusDescription, {**content, "servos": servos}, "bus")
+        found: BusDescription = _entry(BusDescription, {**content, "servos": servos}, "bus")
         bus_of(found)
     except RigError as error:
         raise FormatError(str(error), path) from error

@@ -81,7 +81,7 @@ class FaultRun:
         return data
 
     def answer(self, servo: int, data: bytes, time: float) -> tuple[bytes | None, float]:
-        """A servo's bytes as the host hears them, None if never, and by how many s they are late."""
+        """A servo's bytes as the host hears them, None if never, and how late they are, s."""
         late = 0.0
         changed: bytes | None = data
         for moment in self.moments:

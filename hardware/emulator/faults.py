@@ -111,7 +111,8 @@ def load_faults(path: str | Path) -> tuple[Fault, ...]:
     try:
         content = tomllib.loads(Path(path).read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise FormatError(f"no readable TOML: {error}", path) from error
+        reason = getattr(error, "strerror", None) or error
+        raise FormatError(f"no readable TOML: {reason}", path) from error
     try:
         return faults_from(content)
     except RigError as error:
