@@ -38,10 +38,8 @@ def fake_bus(
     from enpointe.hardware.emulator.terminal import serve
 
     console = Console(json=json, quiet=quiet)
-    if source is None:
-        bus = BusDescription.alike(servos, model, baud=baud)
-    else:
-        bus = load_bus(source)
+    alike = BusDescription.alike
+    bus = alike(servos, model, baud=baud) if source is None else load_bus(source)
     script = () if faults is None else load_faults(faults)
 
     def opened(port: str) -> None:

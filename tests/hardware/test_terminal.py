@@ -75,6 +75,13 @@ def test_the_port_follows_the_hosts_baud_rate(port: PortHandler) -> None:
     assert persistently(lambda: packets.ping(port, 1)[1]) == COMM_SUCCESS
 
 
+def test_the_bus_needs_no_physics_engine() -> None:
+    """It starts in a process of its own, which must not wait for one."""
+    code = "import sys, enpointe.hardware.emulator; print(*{'mujoco', 'casadi'} & set(sys.modules))"
+    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert told.stdout.strip() == ""
+
+
 def test_a_bus_that_cannot_be_built_says_so() -> None:
     with (
         pytest.raises(RigError, match="12"),
