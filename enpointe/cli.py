@@ -30,6 +30,7 @@ from enpointe.options import (
     find_metre,
     unbundled,
 )
+from enpointe.servo_verbs import servo_verbs
 
 __all__ = ["app", "main"]
 
@@ -43,6 +44,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
+app.add_typer(servo_verbs)
 
 
 class ControllerName(StrEnum):

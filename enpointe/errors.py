@@ -12,6 +12,7 @@ __all__ = [
     "MotionError",
     "PoseError",
     "RenderError",
+    "RigError",
     "ScoreError",
 ]
 
@@ -75,3 +76,7 @@ class BodyError(EnpointeError):
 
 class RenderError(EnpointeError):
     """No picture can be drawn on this machine; says which package is missing."""
+
+
+class RigError(EnpointeError):
+    """A rig of servos, a bus or a description of one that can't be used."""
