@@ -17,8 +17,9 @@ def parzen(count: int) -> Array:
     As `scipy.signal.windows` has it, whose import takes longer than a short dance is solved.
     """
     away = np.abs(np.arange(count) - (count - 1) / 2) / (count / 2)
-    inner = 1.0 - 6.0 * away**2 * (1.0 - away)
-    return np.asarray(np.where(away <= 0.5 * (count - 1) / count, inner, 2.0 * (1.0 - away) ** 3))
+    inner = 1.0 - 6.0 * away**2.0 + 6.0 * away**3.0
+    outer = 2.0 * (1.0 - away) ** 3.0
+    return np.asarray(np.where(away <= 0.5 * (count - 1) / count, inner, outer))
 
 
 def averaged(values: Array, seconds: float, rate: float) -> Array:

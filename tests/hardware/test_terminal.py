@@ -78,7 +78,9 @@ def test_the_port_follows_the_hosts_baud_rate(port: PortHandler) -> None:
 def test_the_bus_needs_no_physics_engine() -> None:
     """It starts in a process of its own, which must not wait for one."""
     code = "import sys, enpointe.hardware.emulator; print(*{'mujoco', 'casadi'} & set(sys.modules))"
-    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    told = subprocess.run(
+        [sys.executable, "-P", "-c", code], capture_output=True, text=True, check=True
+    )
     assert told.stdout.strip() == ""
 
 
@@ -91,7 +93,7 @@ def test_a_bus_that_cannot_be_built_says_so() -> None:
 
 
 def test_the_command_prints_its_port_and_ends_at_ctrl_c() -> None:
-    command = [sys.executable, "-m", "enpointe", "fake-bus", "--servos", "2", "--json"]
+    command = [sys.executable, "-P", "-m", "enpointe", "fake-bus", "--servos", "2", "--json"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     try:
         assert process.stdout is not None

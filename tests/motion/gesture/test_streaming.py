@@ -80,7 +80,7 @@ def test_the_file_is_whole_after_every_flush(sizes: list[int], patience: float) 
 def test_a_killed_writer_leaves_every_frame_that_it_had_flushed(lines: int, tmp_path: Path) -> None:
     path = tmp_path / "killed.gst"
     with subprocess.Popen(
-        [sys.executable, "-c", WRITER, str(path)], stdout=subprocess.PIPE, text=True
+        [sys.executable, "-P", "-c", WRITER, str(path)], stdout=subprocess.PIPE, text=True
     ) as process:
         assert process.stdout is not None
         flushed = [int(process.stdout.readline()) for _ in range(lines)][-1]
