@@ -51,7 +51,7 @@ where the weight should be higher."""
 _BRUSH, _LIFTING = 0.006, 0.1
 """m and s: a foot that slides without weight is carried so high over the floor, and takes so long
 to get there; a sole that drags is pushed off its way by friction that nobody planned."""
-_MUSCLE = 0.2
+_MUSCLE = 0.24
 """s: the corners at key poses are rounded over this window, wider than the movement's own since
 legs throw more weight about than arms do; the feet that it moves are put back."""
 _KINKS = (0.06, 0.032)

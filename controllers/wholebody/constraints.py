@@ -65,14 +65,17 @@ class TorqueLimits:
 
 @dataclass(frozen=True, slots=True)
 class FrictionPyramids:
-    """The floor pushes, within its friction:  lambda >= 0 for every edge of every pyramid."""
+    """The floor pushes, within its friction:  0 <= lambda <= c m g / 4  for each of the four edges
+    of a pyramid, c the sole's `capacity`.
+    """
 
     name: ClassVar[str] = "friction pyramids"
 
     def limits(self, instant: Instant) -> Bounds:
-        low = repeated(-np.inf, instant.size).copy()
+        low, high = (repeated(end, instant.size).copy() for end in (-np.inf, np.inf))
         low[instant.nv :] = 0.0
-        return Bounds(low, repeated(np.inf, instant.size))
+        high[instant.nv :] = np.repeat(instant.capacity * (0.25 * instant.weight), 4)
+        return Bounds(low, high)
 
 
 @dataclass(frozen=True, slots=True)

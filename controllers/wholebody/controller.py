@@ -21,7 +21,7 @@ from enpointe.controllers.wholebody.constraints import (
     TorqueLimits,
     joint_torques,
 )
-from enpointe.controllers.wholebody.contacts import ContactSchedule
+from enpointe.controllers.wholebody.contacts import ContactSchedule, Uptake
 from enpointe.controllers.wholebody.instant import Instant, Observer
 from enpointe.controllers.wholebody.problem import WholeBodyProblem
 from enpointe.controllers.wholebody.reference import Reference
@@ -130,6 +130,7 @@ class WholeBody:
         self._reference = Reference(motion, self._observer)
         self._schedule = ContactSchedule(self._reference)
         self._place = StandingPlace()
+        self._uptake = Uptake(len(self._observer.soles))
         self._period = period
         self._fallback = Gains.suggested(motion.model, motion.qpos[0])
         plant.place(motion.qpos[0])
@@ -148,6 +149,7 @@ class WholeBody:
         self._observer.place(state.qpos, state.qvel)
         active = self._schedule.active(0.0, self._observer.clearance())
         self._place.reset(self._observer.points(), self._reference.points[0], active)
+        self._uptake.reset(active)
         self._torque[:] = 0.0
         self._position[:] = state.qpos[self._angles]
         self._velocity[:] = state.qvel[self._dofs]
@@ -172,7 +174,7 @@ class WholeBody:
         """The programme at `t` seconds in `state`, not yet solved."""
         self._observer.place(state.qpos, state.qvel)
         active = self._schedule.active(t, self._observer.clearance())
-        instant = self._observer.instant(active)
+        instant = self._observer.instant(active, self._uptake.follow(active, self._period))
         goal = self._reference.at(t)
         place = self._place.follow(instant.points, goal.points, active, self._period)
         return WholeBodyProblem.build(instant, goal.placed(place), self.tasks, self.constraints)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from enpointe.controllers.plant import Plant
-from enpointe.controllers.wholebody.rows import Places, places
+from enpointe.controllers.wholebody.rows import Places, places, repeated
 
 __all__ = ["Instant", "Observer", "skew"]
 
@@ -41,6 +41,7 @@ class Instant:
         jacobians: Of those points, (S, 3, nv).
         drifts: Their accelerations at qacc = 0, J' v, (S, 3), m/s^2.
         active: Rows of `soles` that may bear force, (A,).
+        capacity: Share of the body's weight that each active sole may bear, (A,); inf for any.
         edges: Directions of the forces' generators, (E, 3), sole by sole as in `active`.
         edge_point: Row of `soles` of each generator, (E,).
         actuated: Dofs of the actuators, nu of them.
@@ -64,12 +65,18 @@ class Instant:
     jacobians: Array
     drifts: Array
     active: Indices
+    capacity: Array
     edges: Array
     edge_point: Indices
     actuated: Places
     angles: Places
     in_legs: NDArray[np.bool_]
     root_rotation: Array
+
+    @property
+    def weight(self) -> float:
+        """m g, N."""
+        return self.mass * self.gravity
 
     @property
     def nv(self) -> int:
@@ -175,8 +182,13 @@ class Observer:
         points[:, 2] -= self._radius
         return np.asarray(points)
 
-    def instant(self, active: Indices) -> Instant:
-        """The state placed last, with the given rows of `soles` able to bear force."""
+    def instant(self, active: Indices, capacity: Array | None = None) -> Instant:
+        """The state placed last, with the given rows of `soles` able to bear force.
+
+        Args:
+            active: Rows of `soles`, (A,).
+            capacity: Share of the body's weight that each may bear, (A,); any amount if None.
+        """
         model, data, nv = self.model, self.plant.data, self.model.nv
         mass_matrix = np.zeros((nv, nv))
         mujoco.mj_fullM(model, data, mass_matrix)
@@ -198,6 +210,7 @@ class Observer:
             jacobians=jacobians,
             drifts=drifts,
             active=active,
+            capacity=repeated(np.inf, len(active)) if capacity is None else capacity,
             edges=self._edges[: 4 * len(active)],
             edge_point=np.repeat(active, 4),
             actuated=self._dofs,

@@ -1,4 +1,4 @@
-"""The reference is laid over the feet as they stand, moved and turned."""
+"""The reference is laid over the feet as they stand, and weight put on them as they come down."""
 
 from __future__ import annotations
 
@@ -8,7 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from enpointe.controllers.wholebody.contacts import Uptake
+from enpointe.controllers.wholebody.controller import DEFAULT_TASKS
 from enpointe.controllers.wholebody.goal import Goal
+from enpointe.controllers.wholebody.problem import WholeBodyProblem
 from enpointe.controllers.wholebody.reference import Reference
 from enpointe.controllers.wholebody.standing_place import Placement, StandingPlace
 from enpointe.controllers.wholebody.tasks import Contact
@@ -107,3 +110,36 @@ def test_a_sole_that_hovers_is_brought_down() -> None:
         asked = asked + instant.drifts[active]
         np.testing.assert_allclose(asked[:, :2], 0.0, atol=1e-9)
         assert np.all(asked[:, 2] < -0.3) if sinks else np.allclose(asked[:, 2], 0.0, atol=0.3)
+
+
+def test_weight_comes_onto_a_heel_little_by_little() -> None:
+    ball, flat = np.arange(2, 6), np.arange(6)
+    uptake = Uptake(12)
+    uptake.reset(ball)
+    assert np.all(np.isinf(uptake.follow(ball, 0.002)))
+    shares = np.array([uptake.follow(flat, 0.002) for _ in range(30)])
+    heel = shares[:, :2]
+    assert heel[0].max() < 0.01
+    assert np.all(np.diff(heel[np.isfinite(heel[:, 0]), 0]) > 0)
+    assert np.all(np.isinf(shares[:, 2:]))
+    assert np.all(np.isinf(heel[-1]))
+
+
+def test_what_lands_alone_bears_at_once() -> None:
+    uptake = Uptake(12)
+    uptake.reset(np.array([], dtype=np.int64))
+    assert np.all(np.isinf(uptake.follow(np.arange(6), 0.002)))
+
+
+def test_no_more_weight_is_put_on_a_sole_than_it_may_bear() -> None:
+    motion = held(FIRST)
+    observer = observed(motion.qpos[0], motion.qvel[0])
+    capacity = np.full(12, np.inf)
+    capacity[:2] = 0.01
+    instant = observer.instant(ALL, capacity)
+    problem = WholeBodyProblem.build(instant, goal(FIRST), DEFAULT_TASKS, driver(FIRST).constraints)
+    unknowns = problem.solve()
+    assert unknowns is not None
+    forces = (unknowns[instant.nv :, None] * instant.edges).reshape(12, 4, 3).sum(axis=1)
+    assert np.all(forces[:2, 2] < 0.011 * instant.weight)
+    assert forces[:, 2].sum() == pytest.approx(instant.weight, rel=0.02)
