@@ -26,7 +26,8 @@ Array = NDArray[np.float64]
 RATE = 50.0
 """Samples a second at which torques are computed; they are interpolated in between."""
 FRICTION = 0.7
-"""Planned below the floor's friction of 1, as a dancer does not count on the last of it."""
+"""Planned below the floor's friction of 1, as a dancer does not count on the last of it. The whole
+body counts on less, because it slid at this where weight goes from foot to foot."""
 _REGULARISATION = 3e-3
 
 

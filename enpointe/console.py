@@ -126,12 +126,23 @@ def _flat(figures: Mapping[str, object], prefix: str = "") -> Iterator[tuple[str
         elif name == "failures" and isinstance(value, list):
             fallen = [str(entry["run"]) for entry in value]
             yield label, f"{len(fallen)}: runs {', '.join(fallen)}" if fallen else "none"
-        elif isinstance(value, float):
-            yield label, f"{value:.4g}"
+        elif name == "rules" and isinstance(value, list):
+            kept = sum(rule["held_fraction"] == 1.0 for rule in value)
+            yield label, f"{kept} of {len(value)} held throughout"
         elif isinstance(value, list):
-            yield label, ", ".join(str(v) for v in value) or "none"
+            apart = "\n" if any(isinstance(entry, Mapping) for entry in value) else ", "
+            yield label, apart.join(_said(entry) for entry in value) or "none"
         else:
-            yield label, "none" if value is None else str(value)
+            yield label, _said(value)
+
+
+def _said(value: object) -> str:
+    """A figure, or some that belong together, in a line."""
+    if isinstance(value, Mapping):
+        return ", ".join(f"{name} {_said(entry)}" for name, entry in value.items())
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    return "none" if value is None else str(value)
 
 
 def _verdict(entry: Mapping[str, Any]) -> str:

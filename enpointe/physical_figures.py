@@ -6,6 +6,7 @@ from math import isfinite
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from enpointe.figures import BeatFigures, PhysicalFigures, StanceFigures
 
@@ -26,15 +27,17 @@ def physical_figures(
     recording: Recording, measures: Measures, shortfall: float | None, weight: WeightPlan | None
 ) -> PhysicalFigures:
     """Everything that a performance under gravity prints besides the kinematic figures."""
-    from enpointe.motion.arrival import danced_tempo
+    from enpointe.motion.arrival import lateness, tempo_kept
     from enpointe.sim.contacts_kept import contacts_kept
 
-    kept, late = danced_tempo(recording.as_motion(), recording.reference)
+    reference = recording.reference
+    lateness_at = lateness(recording.as_motion(), reference)
+    kept, late = tempo_kept(lateness_at, reference)
     contacts = contacts_kept(recording)
     return {
         "tempo_danced": kept if isfinite(kept) else None,
         "lateness_max": late if isfinite(late) else None,
-        "beats_not_kept": beats_not_kept(recording, weight),
+        "beats_not_kept": beats_not_kept(reference, lateness_at, weight),
         "contacts_planned": contacts.planned,
         "contacts_missed": [_stance_figures(stance) for stance in contacts.missed],
         "contacts_unplanned": [_stance_figures(stance) for stance in contacts.unplanned],
@@ -56,21 +59,23 @@ def physical_figures(
     }
 
 
-def beats_not_kept(recording: Recording, weight: WeightPlan | None) -> list[BeatFigures]:
+def beats_not_kept(
+    reference: Motion, late: NDArray[np.float64], weight: WeightPlan | None
+) -> list[BeatFigures]:
     """Key poses that were not reached in time, or whose weight no floor can hold, in order.
 
     Args:
-        recording: What happened.
+        reference: What was asked.
+        late: Of each key pose but the first, (K - 1,), s; NaN where it was never reached.
         weight: The plan of the centre of mass, where one was made.
     """
-    from enpointe.motion.arrival import KEPT, lateness
+    from enpointe.motion.arrival import KEPT
 
-    events = recording.reference.key_events
-    late = lateness(recording.as_motion(), recording.reference)
+    events = reference.key_events
     lost: list[BeatFigures] = []
     for i, event in enumerate(events):
         by = float(late[i - 1]) if i > 0 else 0.0
-        outside = _outside(weight, recording.reference, i)
+        outside = _outside(weight, reference, i)
         if not abs(by) <= KEPT or outside > OUTSIDE:
             lost.append(
                 {

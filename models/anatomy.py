@@ -26,6 +26,8 @@ __all__ = ["SIDES", "Hinge", "Skeleton", "mirrored", "side_sign"]
 SIDES = ("left", "right")
 NECK_RISE = 0.035
 """Neck joint above suprasternale, m: about the seventh cervical vertebra."""
+SOLE_RADIUS = 0.012
+"""Radius of the contact spheres, m; the toe joint is as high above the sole."""
 _D = sqrt(0.5)
 
 

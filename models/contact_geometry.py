@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import mujoco
 
-from enpointe.models.anatomy import NECK_RISE, SIDES, Skeleton, side_sign
+from enpointe.models.anatomy import NECK_RISE, SIDES, SOLE_RADIUS, Skeleton, side_sign
 
 __all__ = [
     "FLOOR",
@@ -31,7 +31,6 @@ FRICTION = (1.0, 0.005, 0.0001)
 # Softer contacts lost one-foot demi-pointe in trials; these are a hard floor's.
 _SOLREF = (0.01, 1.0)
 _SOLIMP = (0.95, 0.99, 0.001, 0.5, 2.0)
-_SOLE_RADIUS = 0.012
 
 
 def add_floor(spec: mujoco.MjSpec) -> None:
@@ -92,15 +91,15 @@ def add_soles(spec: mujoco.MjSpec, skeleton: Skeleton) -> None:
     The ball's lie on the axis of the toe joint, so that one set serves the flat foot and
     demi-pointe, and belong to the toes, which stay where they are while the foot rises over them.
     """
-    half = skeleton.ball_half_breadth - _SOLE_RADIUS
-    lift = _SOLE_RADIUS - skeleton.ankle_height
+    half = skeleton.ball_half_breadth - SOLE_RADIUS
+    lift = SOLE_RADIUS - skeleton.ankle_height
     for side in SIDES:
         foot, toe = spec.body(f"{side}_foot"), spec.body(f"{side}_toe")
         for edge, s in (("inner", -side_sign(side)), ("outer", side_sign(side))):
-            heel = [-skeleton.heel_back + _SOLE_RADIUS, s * 0.55 * half, lift]
+            heel = [-skeleton.heel_back + SOLE_RADIUS, s * 0.55 * half, lift]
             _add_sole(foot, f"{side}_heel_{edge}", heel)
             _add_sole(toe, f"{side}_ball_{edge}", [0, s * half, 0])
-            tip = [skeleton.toe_length - _SOLE_RADIUS, s * 0.5 * half, 0]
+            tip = [skeleton.toe_length - SOLE_RADIUS, s * 0.5 * half, 0]
             _add_sole(toe, f"{side}_tip_{edge}", tip)
 
 
@@ -111,7 +110,7 @@ def add_pointe_shoes(spec: mujoco.MjSpec, skeleton: Skeleton) -> None:
     """
     long, broad = PLATFORM
     end = skeleton.toe_length - _PLATFORM_RADIUS
-    middle = PLATFORM_RISE - _SOLE_RADIUS
+    middle = PLATFORM_RISE - SOLE_RADIUS
     for side in SIDES:
         for edge, s in (("inner", -side_sign(side)), ("outer", side_sign(side))):
             for part, rise in (("under", -0.5 * long), ("upper", 0.5 * long)):
@@ -129,7 +128,7 @@ _PLATFORM_RADIUS = 0.003
 
 
 def _add_sole(
-    body: mujoco.MjsBody, name: str, pos: list[float], radius: float = _SOLE_RADIUS
+    body: mujoco.MjsBody, name: str, pos: list[float], radius: float = SOLE_RADIUS
 ) -> None:
     body.add_geom(
         name=name,

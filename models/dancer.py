@@ -15,7 +15,15 @@ import mujoco
 import numpy as np
 
 from enpointe.models import anatomy
-from enpointe.models.anatomy import NECK_RISE, SIDES, Hinge, Skeleton, mirrored, side_sign
+from enpointe.models.anatomy import (
+    NECK_RISE,
+    SIDES,
+    SOLE_RADIUS,
+    Hinge,
+    Skeleton,
+    mirrored,
+    side_sign,
+)
 from enpointe.models.anthropometry import Anthropometry, Segment
 from enpointe.models.contact_geometry import (
     add_floor,
@@ -210,8 +218,6 @@ def _add_leg(pelvis: mujoco.MjsBody, skeleton: Skeleton, side: str) -> None:
 
 TOE_MASS_SHARE = 0.15
 """Share of the foot's mass in front of the toe joint: a box of a fifth of its volume, rounded."""
-SOLE_RADIUS = 0.012
-"""Radius of the contact spheres, m; the toe joint is as high above the sole."""
 
 
 def _add_hinges(body: mujoco.MjsBody, hinges: Iterable[Hinge], side: str | None) -> None:

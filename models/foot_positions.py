@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from enpointe.errors import PoseError
+from enpointe.models.anatomy import SOLE_RADIUS
 from enpointe.models.figure import Figure
 from enpointe.notation import FeetPosition, Side
 
@@ -49,9 +50,9 @@ class Footprint:
 
     def sole(self, figure: Figure) -> NDArray[np.float64]:
         """Corners of the sole: heel, ball and toe tip, two of each, (6, 2), m."""
-        heel, ball = figure.heel_back - 0.012, figure.ball_forward
-        tip = figure.ball_forward + figure.toe_length - 0.012
-        half = figure.ball_half_breadth - 0.012
+        heel, ball = figure.heel_back - SOLE_RADIUS, figure.ball_forward
+        tip = figure.ball_forward + figure.toe_length - SOLE_RADIUS
+        half = figure.ball_half_breadth - SOLE_RADIUS
         marks = [(-heel, 0.55 * half), (ball, half), (tip, 0.5 * half)]
         return np.array([self.point(x, s * y) for x, y in marks for s in (1.0, -1.0)])
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from enpointe.motion.motion import Motion
 
-__all__ = ["KEPT", "arrivals", "danced_tempo", "lateness"]
+__all__ = ["KEPT", "arrivals", "danced_tempo", "lateness", "tempo_kept"]
 
 Array = NDArray[np.float64]
 _NEAR = 0.1
@@ -57,7 +57,11 @@ def danced_tempo(danced: Motion, asked: Motion) -> tuple[float, float]:
     The tempo is the slope of the beats over the moments of arrival, corrected for where in its way
     each arrival is counted (least squares); NaN where a key pose is never reached.
     """
-    late = lateness(danced, asked)
+    return tempo_kept(lateness(danced, asked), asked)
+
+
+def tempo_kept(late: Array, asked: Motion) -> tuple[float, float]:
+    """The same as `danced_tempo`, from the `lateness` of each key pose but the first."""
     beats = np.array([event.beat or 0.0 for event in asked.key_events[1:]])
     times = np.array([event.time for event in asked.key_events[1:]]) + late
     if len(beats) < 2 or not np.all(np.isfinite(times)):

@@ -36,6 +36,9 @@ _SLIGHT_PAUSE = 0.8
 _LIMB_PAUSE = 0.35
 _LIMB_MOVES = 0.12
 """Slower than this, m/s, a limb is not taken to have been on its way at all."""
+_UNSEEN = 0.001
+"""Slower than this, m/s, a part rests: no eye sees it move, and of a part that rests only the
+rounding of its numbers would say where it pauses."""
 LEAST_SPACING = 0.15
 """Closest key moments, s: a third of a beat at the pace of an allegro."""
 _SHORTEST_HOLD = 0.5
@@ -149,8 +152,10 @@ def key_moments(outline: MotionOutline) -> tuple[KeyMoment, ...]:
 def _pauses(speed: Array, below: float, *, ripples: bool = True) -> list[tuple[int, float]]:
     """Where a speed dips between two peaks to less than a share of the lower one, and how deep.
 
-    Without ripples a peak in a slow stretch is none, which would hide the pause about it.
+    What rests in the dip pauses where it comes to rest. Without ripples a peak in a slow stretch is
+    none, which would hide the pause about it.
     """
+    speed = _seen(speed)
     padded = np.concatenate([[0.0], speed, [0.0]])
     peaks, _ = find_peaks(padded)
     if not ripples:
@@ -167,16 +172,23 @@ def _pauses(speed: Array, below: float, *, ripples: bool = True) -> list[tuple[i
 def _arrivals(speed: Array, below: float) -> list[tuple[int, float]]:
     """Where a speed first dips to less than a share of the peak before, whatever follows it.
 
-    A dancer who comes down into a plié may glide on in it, so that no peak follows.
+    A dancer who comes down into a plié may glide on in it, so that no peak follows, or rest there.
     """
+    speed = _seen(speed)
     peaks, _ = find_peaks(np.concatenate([[0.0], speed, [0.0]]))
     found = []
     for before in peaks - 1:
-        dips, _ = find_peaks(-speed[before:])
-        share = speed[before + dips[0]] / speed[before] if len(dips) else 1.0
-        if share < below:
-            found.append((int(before + dips[0]), 1.0 - float(share)))
+        _, dips = find_peaks([*-speed[before:], -np.inf], plateau_size=1)
+        for dip in before + dips["left_edges"][:1]:
+            share = speed[dip] / speed[before]
+            if share < below:
+                found.append((int(dip), 1.0 - float(share)))
     return found
+
+
+def _seen(speed: Array) -> Array:
+    """A speed, and none where no eye would see it."""
+    return np.where(speed < _UNSEEN, 0.0, speed)
 
 
 def _spaced(found: Sequence[tuple[float, float]], start: float, end: float) -> list[KeyMoment]:

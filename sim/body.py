@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 from enpointe.controllers import Command, State
 from enpointe.errors import BodyError
 from enpointe.motion import Motion
+from enpointe.motion.stations import GRAVITY
 from enpointe.sim.contacts import ContactReader
 
 __all__ = ["CONTROL_PERIOD", "SimulatedBody"]
 
 CONTROL_PERIOD = 0.002
 """s between commands: 500 Hz."""
-EARTH = -9.81
 FALLEN = 0.6
 """A dancer whose centre of mass is below this share of its first height has fallen."""
 _COMMANDED = ("position", "velocity", "torque", "stiffness", "damping")
@@ -174,7 +174,7 @@ def _refuse_help(model: mujoco.MjModel) -> None:
     if model.nmocap or model.neq:
         raise BodyError("a dancer has no mocap bodies and no equality constraints to hold on to")
     forbidden = mujoco.mjtDisableBit.mjDSBL_GRAVITY | mujoco.mjtDisableBit.mjDSBL_CONTACT
-    earth = np.allclose(model.opt.gravity, [0.0, 0.0, EARTH], atol=0.05)
+    earth = np.allclose(model.opt.gravity, [0.0, 0.0, -GRAVITY], atol=0.05)
     if model.opt.disableflags & forbidden or not earth:
         raise BodyError("gravity and contact must be on and the earth's; this stage has no others")
     if np.any(model.body_gravcomp) or np.any(model.dof_damping[:6]):

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from enpointe.controllers import Recording
+from enpointe.report.bars import STRENGTH, Bar, draw_bar, label_rows
 from enpointe.report.chart import (
     GREY,
     INK,
@@ -21,15 +22,14 @@ from enpointe.report.chart import (
     thinned,
     to_svg,
 )
-from enpointe.report.timeline import STRENGTH
 from enpointe.sim.feet import FootState, foot_states
 from enpointe.sim.measures import Measures
 
 __all__ = ["force_chart"]
 
 Array = NDArray[np.float64]
-_NAMED = 0.055
-"""A bar shorter than this share of the dance is too short for its name."""
+_LETTER = 0.01375
+"""Room that a letter of a bar's name needs, as a share of the dance."""
 
 
 @quiet
@@ -88,13 +88,6 @@ def _draw_feet(axes: Axes, recording: Recording) -> None:
             if state is FootState.AIR:
                 continue
             since, until = (float(recording.time[min(i, len(states) - 1)]) for i in (start, begun))
-            strength = STRENGTH[state]
-            axes.barh(row, until - since, 0.78, since, color=colour, alpha=strength, linewidth=0.0)
-            if until - since > _NAMED * end * len(state) / len("flat"):
-                ink = "white" if strength > 0.8 else INK
-                middle = 0.5 * (since + until)
-                axes.text(middle, row, state, ha="center", va="center", color=ink, fontsize=7.5)
-    axes.set_ylim(-0.5, 1.5)
-    axes.set_yticks([0, 1], [side for side, _ in sides])
-    axes.tick_params(axis="y", length=0.0)
-    axes.spines["left"].set_visible(False)
+            bar = Bar(since, until, state, STRENGTH[state])
+            draw_bar(axes, row, bar, colour, letter=_LETTER * end)
+    label_rows(axes, [side for side, _ in sides])

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,23 +11,13 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from enpointe.checking import Check
+from enpointe.report.bars import STRENGTH, Bar, draw_bar, label_rows
 from enpointe.report.chart import COM, GREY, INK, LEFT, RIGHT, quiet, thinned, to_svg
-from enpointe.sim.feet import FootState
 
-__all__ = ["STRENGTH", "timeline_chart"]
+__all__ = ["timeline_chart"]
 
-STRENGTH: Mapping[FootState, float] = {
-    FootState.FLAT: 0.3,
-    FootState.DEMI_POINTE: 0.6,
-    FootState.POINTE: 0.95,
-    FootState.HEEL: 0.15,
-}
-"""How strongly a foot's bar is coloured: the more it rises the stronger."""
-_NAMED = 0.012
-"""A bar shorter than this share of the movement for each letter is too short for its name."""
-
-_Bar = tuple[float, float, str, float]
-"""Start and end in s, its name, and how strongly it is coloured."""
+_LETTER = 0.012
+"""Room that a letter of a bar's name needs, as a share of the movement."""
 
 
 @quiet
@@ -35,16 +26,16 @@ def timeline_chart(check: Check, name: str) -> str:
     figure = Figure(figsize=(8.25, 4.6))
     bars, margin, help_axes = figure.subplots(3, 1, sharex=True, height_ratios=(2.2, 1.3, 1.3))
     found = check.found
-    rows: list[tuple[str, str, Sequence[_Bar]]] = [
+    rows: list[tuple[str, str, Sequence[Bar]]] = [
         ("left foot", LEFT, _feet(check, "left")),
         ("right foot", RIGHT, _feet(check, "right")),
         (
             "in the air",
             INK,
-            [(f.start, f.end, f"{1000 * f.height:.0f} mm", 0.25) for f in found.flights],
+            [Bar(f.start, f.end, f"{1000 * f.height:.0f} mm", 0.25) for f in found.flights],
         ),
-        ("turning", INK, [(t.start, t.end, f"{t.revolutions:+.2f}", 0.25) for t in found.turns]),
-        ("impossible", COM, [(h.start, h.end, "", 0.8) for h in found.help]),
+        ("turning", INK, [Bar(t.start, t.end, f"{t.revolutions:+.2f}", 0.25) for t in found.turns]),
+        ("impossible", COM, [Bar(h.start, h.end, "", 0.8) for h in found.help]),
     ]
     _draw_bars(bars, check, rows)
     _draw_margin(margin, check)
@@ -67,29 +58,23 @@ def timeline_chart(check: Check, name: str) -> str:
     )
 
 
-def _feet(check: Check, side: str) -> list[_Bar]:
-    return [(c.start, c.end, str(c.on), STRENGTH[c.on]) for c in check.found.contacts[side]]
+def _feet(check: Check, side: str) -> list[Bar]:
+    return [Bar(c.start, c.end, str(c.on), STRENGTH[c.on]) for c in check.found.contacts[side]]
 
 
 def _frames(check: Check, time: np.ndarray | float) -> np.ndarray:
     return np.asarray(time) * check.clock.rate + check.clock.first
 
 
-def _draw_bars(axes: Axes, check: Check, rows: list[tuple[str, str, Sequence[_Bar]]]) -> None:
+def _draw_bars(axes: Axes, check: Check, rows: list[tuple[str, str, Sequence[Bar]]]) -> None:
     whole = check.found.motion.duration
+    letter = _LETTER * whole * check.clock.rate
     for row, (_, colour, spans) in enumerate(reversed(rows)):
-        for start, end, label, strength in spans:
-            first, last = (float(_frames(check, moment)) for moment in (start, end))
-            width = max(last - first, 1.0)
-            axes.barh(row, width, 0.72, first, color=colour, alpha=strength, linewidth=0.0)
-            if label and end - start > _NAMED * whole * len(label):
-                ink = "white" if strength > 0.8 else INK
-                middle = 0.5 * (first + last)
-                axes.text(middle, row, label, ha="center", va="center", color=ink, fontsize=7.5)
-    axes.set_ylim(-0.5, len(rows) - 0.5)
-    axes.set_yticks(range(len(rows)), [label for label, _, _ in reversed(rows)])
-    axes.tick_params(axis="y", length=0.0)
-    axes.spines["left"].set_visible(False)
+        for bar in spans:
+            first, last = (float(_frames(check, moment)) for moment in (bar.start, bar.end))
+            shown = replace(bar, start=first, end=max(last, first + 1.0))
+            draw_bar(axes, row, shown, colour, letter=letter)
+    label_rows(axes, [name for name, _, _ in reversed(rows)])
     axes.set_xlim(*(float(_frames(check, t)) for t in (0.0, whole)))
 
 

@@ -20,7 +20,6 @@ settings = { "Return Delay Time" = 0 }
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from pathlib import Path
@@ -32,6 +31,7 @@ from enpointe.hardware.emulator.bus import Bus, Supply
 from enpointe.hardware.emulator.fault_run import FaultRun
 from enpointe.hardware.emulator.plant import Load, Loads, Plant
 from enpointe.hardware.emulator.servo import FIRMWARE, Servo
+from enpointe.hardware.toml_file import read_toml
 from enpointe.hardware.units import BAUD_RATES
 
 __all__ = ["BusDescription", "ServoDescription", "bus_of", "load_bus"]
@@ -139,11 +139,7 @@ def load_bus(path: str | Path) -> BusDescription:
     Raises:
         FormatError: It is no such file; says which entry is wrong.
     """
-    try:
-        content = tomllib.loads(Path(path).read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise FormatError(f"no readable TOML: {reason}", path) from error
+    content = read_toml(path)
     try:
         rows = content.pop("servo", [])
         if not isinstance(rows, Sequence) or not rows:

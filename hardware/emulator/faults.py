@@ -11,13 +11,13 @@ probability = 0.01   # of each packet
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import MISSING, dataclass, fields
 from enum import StrEnum
 from pathlib import Path
 
 from enpointe.errors import FormatError, RigError
+from enpointe.hardware.toml_file import read_toml
 
 __all__ = ["Fault", "FaultKind", "faults_from", "load_faults"]
 
@@ -108,11 +108,7 @@ def load_faults(path: str | Path) -> tuple[Fault, ...]:
     Raises:
         FormatError: It is no such file; says what is wrong in which fault.
     """
-    try:
-        content = tomllib.loads(Path(path).read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise FormatError(f"no readable TOML: {reason}", path) from error
+    content = read_toml(path)
     try:
         return faults_from(content)
     except RigError as error:

@@ -1,7 +1,8 @@
 """CSM, Character Studio's marker files (ENACTIVE D.RD3.3.1 §2.10).
 
 Sections that start with $: the first and last frame, the rate, the order of the markers, and the
-points, a row a frame. A marker that was not seen is a DROPOUT in some files.
+points, a row a frame. The word DROPOUT stands for the three numbers of a marker that was not seen:
+so assimp reads it (code/AssetLib/CSM/CSMLoader.cpp), after the format's own document.
 """
 
 from __future__ import annotations

@@ -48,6 +48,8 @@ def test_a_kinematic_performance_and_a_table(
     assert err == ""
     assert "report: short/report.html" in out
     assert "completed" in out
+    assert re.search(r"rules +\d+ of \d+ held throughout", out)
+    assert not set("{[") & set(out)
     assert sorted(p.name for p in (home / "short").iterdir()) == ["motion.npz", "report.html"]
 
 

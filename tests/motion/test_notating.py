@@ -143,6 +143,21 @@ def alike(found: ResolvedFrame, wanted: ResolvedFrame) -> bool:
     return all(found.arms[side].named == wanted.arms[side].named for side in Side)
 
 
+@pytest.mark.parametrize("preset", ["natural", "happy"])
+def test_what_nobody_can_see_is_not_read(preset: str) -> None:
+    """A thousandth of a nanometre, now and then: while arms rest, that is all that moves them."""
+    danced = motion("third-port-de-bras", preset)
+    beats = []
+    for seed in range(3):
+        rng = np.random.default_rng(seed)
+        now_and_then = rng.random((len(danced.time), 1)) < 0.1
+        blips = 1e-12 * rng.standard_normal(danced.qpos.shape) * now_and_then
+        score = notate(Motion.from_qpos(danced.model, danced.time, danced.qpos + blips))
+        beats.append([frame.beat for frame in score.frames])
+    written = load_score("third-port-de-bras").performed()
+    assert beats == 3 * [[frame.beat for frame in written.frames]]
+
+
 @pytest.mark.parametrize("name", PORTS_DE_BRAS)
 def test_what_is_written_is_a_score(name: str) -> None:
     score = read_back(name, tempo=None)

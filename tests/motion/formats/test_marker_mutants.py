@@ -16,7 +16,8 @@ from hypothesis import strategies as st
 from enpointe.errors import FormatError
 from enpointe.motion.formats import Format, Joint, Skeleton, SkeletonMotion, Space, formats
 
-from .making import binary_mutant, marker_motion, text_mutant
+from .making import marker_motion
+from .mutants import binary_mutant, text_mutant
 
 OURS = ("C3D", "TRC", "CSM", "AOA", "BRD", "CSV", "CSV of joints", "BAP")
 FORMATS = {each.name: each for each in formats() if each.name in OURS}
