@@ -10,6 +10,7 @@ from PIL import Image
 
 import enpointe
 from enpointe.comparing import Comparison
+from enpointe.danced import Danced
 from enpointe.models import KeyPose
 from enpointe.motion import Effort, Motion
 from enpointe.motion.wrist import LogisticFit, fit_logistic, wrist_profiles
@@ -46,7 +47,16 @@ from enpointe.report.pictures import jpeg
 from enpointe.report.promises import promises_sections
 from enpointe.report.wrists import MOVEMENTS_MAX, LineStyle, Series, wrist_chart
 
-__all__ = ["Material", "comparison_page", "performance_page", "poses_page"]
+__all__ = [
+    "PICTURE_WIDTH",
+    "Material",
+    "comparison_page",
+    "film_section",
+    "footer",
+    "performance_page",
+    "physics_sections",
+    "poses_page",
+]
 
 PICTURE_WIDTH = 300
 VARIANT_STYLES: dict[str, tuple[str, LineStyle, float, int]] = {
@@ -114,12 +124,12 @@ def performance_page(performance: Performance, material: Material) -> Page:
         _score_section(
             choreography.score, material, tuple(choreography.key_times), choreography.tempo
         ),
-        _film_section(material, performance.measures is not None),
+        film_section(material.film, performance.measures is not None),
         _poses_section(choreography.score, choreography.key_poses, material),
         _wrist_section(ways, series, performance.effort),
         Section("effort", "Effort asked, and what came out", (_effort_table(performance),)),
         *promises_sections(figures),
-        *_physics_sections(performance),
+        *physics_sections(performance),
         *rules_sections(performance.rules),
         _certificate_section(choreography.key_poses),
     ]
@@ -130,7 +140,7 @@ def performance_page(performance: Performance, material: Material) -> Page:
         _facts(performance),
         material.warning,
         tuple(s for s in sections if s is not None),
-        _footer(performance.motion.model),
+        footer(performance.motion.model),
     )
 
 
@@ -167,7 +177,7 @@ def comparison_page(comparison: Comparison, material: Material) -> Page:
             tuple(first.choreography.key_times),
             first.choreography.tempo,
         ),
-        _film_section(material, True),
+        film_section(material.film, True),
         _wrist_section(movements(first.choreography), series, first.effort),
         Section(
             "fits",
@@ -186,7 +196,7 @@ def comparison_page(comparison: Comparison, material: Material) -> Page:
         _facts(first),
         material.warning,
         tuple(s for s in sections if s is not None),
-        _footer(first.motion.model),
+        footer(first.motion.model),
     )
 
 
@@ -205,7 +215,7 @@ def poses_page(poses: Poses, material: Material, model: mujoco.MjModel) -> Page:
         (("method", score.method), ("key poses", str(len(poses.key_poses)))),
         material.warning,
         sections,
-        _footer(model),
+        footer(model),
     )
 
 
@@ -233,8 +243,7 @@ def _score_section(
     return Section("stave", "Stave", (stave, text))
 
 
-def _film_section(material: Material, physical: bool) -> Section | None:
-    film = material.film
+def film_section(film: FilmFile | None, physical: bool) -> Section | None:
     if film is None:
         return None
     caption = "Seen from the audience."
@@ -346,7 +355,7 @@ def _figure(value: float | None, places: int = 2) -> Cell:
     return Cell(text.replace("-", "−"), value)
 
 
-def _physics_sections(performance: Performance) -> tuple[Section, ...]:
+def physics_sections(performance: Danced) -> tuple[Section, ...]:
     recording, measures = performance.recording, performance.measures
     if recording is None or measures is None:
         return ()
@@ -392,7 +401,7 @@ def _certificate_section(poses: Sequence[KeyPose], *, opened: bool = False) -> S
     return Section("certificates", "Certificates", (Paragraph(solved), *blocks))
 
 
-def _footer(model: mujoco.MjModel) -> str:
+def footer(model: mujoco.MjModel) -> str:
     mass = float(model.body_mass.sum())
     return (
         f"Made by enpointe {enpointe.__version__} with MuJoCo {mujoco.__version__}; "
