@@ -7,6 +7,7 @@ from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from enpointe.captured import is_motion_file
 from enpointe.danced import CONTROLLERS, Danced, run_physics
 from enpointe.errors import EnpointeError
 from enpointe.figures import PerformanceFigures, RuleKeptFigures
@@ -156,6 +157,8 @@ def perform(
         True
     """
     # The score first, and before the engines load: a typing mistake should not wait for them.
+    if not isinstance(source, Score) and is_motion_file(source):
+        raise EnpointeError(f"{source} is a motion file, not a score: use enpointe.perform_file")
     score = source if isinstance(source, Score) else load_score(source)
     from enpointe.motion import Interpolation, find_effort
 

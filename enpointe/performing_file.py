@@ -1,4 +1,4 @@
-"""`enpointe perform` on a motion file: its movement danced under gravity where feet can dance it."""
+"""`enpointe perform` on a motion file: danced under gravity where feet can dance it."""
 
 from __future__ import annotations
 
@@ -201,14 +201,10 @@ def perform_file(
         return _moved(captured, asked, speed)
     chosen = _choose(captured, asked, speed)
     motion, weight = _possible(captured, chosen.eased, controller, progress)
-    physics = run_physics(motion, controller, progress)
     return FilePerformance(
         controller=controller,
         motion=motion,
-        recording=physics.recording,
-        measures=physics.measures,
-        shortfall=physics.shortfall,
-        qp_failures=physics.qp_failures,
+        physics=run_physics(motion, controller, progress),
         weight=weight,
         captured=captured,
         asked=asked,
@@ -276,9 +272,10 @@ def _choose(captured: Captured, asked: tuple[float, float], speed: float) -> _Ch
             break
         longest = max(possible, key=lambda each: each.length)
         eased = ease(captured.motion, captured.contacts, longest.start, longest.end, speed)
-        plan = plan_weight(eased.motion, eased.contacts, eased.motion)
-        source = np.interp(plan.time, eased.motion.time, eased.source)
-        more = () if captured.stored else outside_the_feet(plan, source)
+        more: tuple[Obstacle, ...] = ()
+        if not captured.stored:
+            plan = plan_weight(eased.motion, eased.contacts, eased.motion)
+            more = outside_the_feet(plan, np.interp(plan.time, eased.motion.time, eased.source))
         if not more:
             others = tuple(each for each in possible if each != longest)
             return _Chosen(longest, others, _within(found, asked), eased)

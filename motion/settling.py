@@ -64,8 +64,8 @@ def _flatten(
     heel = np.flatnonzero(bodies == model.body(f"{side}_foot").id)
     toes = np.flatnonzero(bodies == model.body(f"{side}_toe").id)
     foot = np.concatenate([heel, toes])
-    on_heel, on_toes = bears[:, heel].any(axis=1), bears[:, toes].any(axis=1)
-    flat = bears[:, foot].all(axis=1)
+    on_heel, on_toes = (np.asarray(bears[:, part].any(axis=1)) for part in (heel, toes))
+    flat = np.asarray(bears[:, foot].all(axis=1))
     for (stance,) in find_objects(label(on_heel | on_toes)[0]):
         rows = np.arange(stance.start, stance.stop)
         stood = rows[flat[rows]]

@@ -1,4 +1,4 @@
-"""The report of a motion file that was danced: what of it, what not and why, and what came of it."""
+"""The report of a motion file that was danced: what of it, what not, and what came of it."""
 
 from __future__ import annotations
 
@@ -107,9 +107,10 @@ def _spans_section(dance: FilePerformance) -> Section:
         prose=True,
     )
     ends = Paragraph(
-        "A body on its own feet starts from standing. Where the file is under way at an end of what "
-        "is danced, the same way through the same poses is begun from rest and brought to rest: the "
-        "first and the last half second take a second each, with half a second of standing."
+        "A body on its own feet starts from standing. Where the file is under way at an end of "
+        "what is danced, the same way through the same poses is begun from rest and brought to "
+        "rest: the first and the last half second take a second each, with half a second of "
+        "standing."
     )
     led = Paragraph(
         "A capture is put on the dancer's body, and its weight led to where the standing feet can "

@@ -23,8 +23,8 @@ def promises_sections(figures: PerformanceFigures) -> tuple[Section, ...]:
 
 def contacts_section(figures: PhysicalFigures) -> Section:
     """The section of contacts alone, of a movement without beats."""
-    blocks = (Paragraph(_contacts(figures)), *_contacts_tables(figures))
-    return Section("promises", "Contacts", blocks)
+    said = Paragraph(_contacts(figures))
+    return Section("promises", "Contacts", (said, *_contacts_tables(figures)))
 
 
 def _beats(figures: PerformanceFigures) -> str:

@@ -48,8 +48,8 @@ def write_report(
     """Write a report of a dance into a folder.
 
     `report.html` holds everything in itself; beside it stand `stave.svg`, `key-poses.png` and the
-    film (`dance.mp4`, or `dance.gif` without the video extra). Of a motion file there is no stave, and
-    `moments.png` instead of key poses.
+    film (`dance.mp4`, or `dance.gif` without the video extra). Of a motion file there is no stave,
+    and `moments.png` instead of key poses.
 
     Args:
         dance: What `perform`, `perform_file`, `compare` or `pose` returned.

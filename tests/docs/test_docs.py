@@ -146,7 +146,8 @@ def test_every_command_exists(page: str, words: list[str]) -> None:
         from enpointe.motion import find_effort
 
         find_effort(given["--effort"])
-    if verb in ("perform", "compare", "sweep") and rest and not rest[0].endswith(".bmn"):
+    file = (".bmn", ".amc", ".bvh", ".npz") if verb == "perform" else (".bmn",)
+    if verb in ("perform", "compare", "sweep") and rest and not rest[0].endswith(file):
         poses = enpointe.notation.names() if "--hold" in rest else ()
         assert rest[0] in (*enpointe.notation.shipped_scores(), *poses)
 
@@ -329,6 +330,12 @@ def phrase() -> Score:
 def test_fields_of_a_kinematic_performance(phrase: Score) -> None:
     dance = enpointe.perform(phrase, controller="kinematic")
     assert set(dance.summary()) == fields("kinematic")
+
+
+def test_fields_of_a_performance_of_a_file(phrase: Score, tmp_path: Path) -> None:
+    drawn = enpointe.perform(phrase, controller="kinematic").save(tmp_path)["motion"]
+    figures = enpointe.perform_file(drawn, controller="kinematic").summary()
+    assert set(figures) == fields("kinematic") | fields("file")
 
 
 def test_fields_of_a_check(phrase: Score) -> None:
