@@ -24,7 +24,7 @@ Mask = NDArray[np.bool_]
 
 ON_FLOOR = 0.005
 """A sole nearer to the floor than this, m, is on it."""
-AT_REST = 0.10
+AT_REST = 0.05
 """A sole slower than this, m/s, is not sliding."""
 SHORTEST = 0.04
 """A contact, or a gap in one, shorter than this is chatter, s: nobody shifts weight in it."""

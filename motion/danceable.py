@@ -44,9 +44,10 @@ _SOLE, _WEIGHT, _TRUNK, _PELVIS = 40.0, 10.0, 1.0, 0.6
 _HEIGHTS = (5.0, 10.0)
 """Costs of the height (1/m), round by round: straight legs reach no higher than they are long, so
 that it is asked for gently first, and then planned again from what was reached."""
-_POSTURE, _BEARING_LEG = 0.3, 0.05
-"""Costs of joint angles (1/rad): of what moves freely, and of a leg that stands, whose hip and
-ankle must give way for the weight to move."""
+_POSTURE, _BEARING_LEG, _ARMS = 0.3, 0.05, 1.0
+"""Costs of joint angles (1/rad): of what moves freely, of a leg that stands, whose hip and ankle
+must give way for the weight to move, and of arms, which are seen and are not there to be thrown up
+where the weight should be higher."""
 _BRUSH, _LIFTING = 0.006, 0.1
 """m and s: a foot that slides without weight is carried so high over the floor, and takes so long
 to get there; a sole that drags is pushed off its way by friction that nobody planned."""
@@ -143,6 +144,7 @@ class _Poser:
         self._range = mink.ConfigurationLimit(model, gain=1.0)
         self._clear = _clear(model)
         self._legs = _legs(model, contacts.soles)
+        self._arms = _arms(model)
         self._freedom = _freedom(contacts)
         feet = [leg.soles for leg in self._legs]
         self._lift = _lift(self._heights(), self._freedom, feet, contacts.time)
@@ -202,6 +204,7 @@ class _Poser:
         model = self._motion.model
         cost = np.full(model.nv, _POSTURE)
         cost[:6] = 0.0
+        cost[self._arms] = _ARMS
         for leg in self._legs:
             if self._contacts.bears[i, leg.soles].any():
                 cost[leg.dofs] = _BEARING_LEG
@@ -253,6 +256,13 @@ def _clear(model: mujoco.MjModel) -> mink.Limit:
         collision_detection_distance=0.02,
         bound_relaxation=-_APART,
     )
+
+
+def _arms(model: mujoco.MjModel) -> NDArray[np.int64]:
+    """DoFs of shoulders, elbows and wrists."""
+    parts = ("upper_arm", "forearm", "hand")
+    chain = [model.body(f"{side}_{part}").id for side in Side for part in parts]
+    return np.flatnonzero(np.isin(model.dof_bodyid, chain))
 
 
 def _legs(model: mujoco.MjModel, soles: NDArray[np.int64]) -> tuple[_Leg, ...]:

@@ -21,11 +21,12 @@ from enpointe.controllers.wholebody.constraints import (
     TorqueLimits,
     joint_torques,
 )
-from enpointe.controllers.wholebody.contacts import ContactSchedule, FootShift
+from enpointe.controllers.wholebody.contacts import ContactSchedule
 from enpointe.controllers.wholebody.instant import Instant, Observer
 from enpointe.controllers.wholebody.problem import WholeBodyProblem
 from enpointe.controllers.wholebody.reference import Reference
 from enpointe.controllers.wholebody.rows import places
+from enpointe.controllers.wholebody.standing_place import StandingPlace
 from enpointe.controllers.wholebody.tasks import (
     AngularMomentum,
     CentreOfMass,
@@ -128,7 +129,7 @@ class WholeBody:
         )
         self._reference = Reference(motion, self._observer)
         self._schedule = ContactSchedule(self._reference)
-        self._shift = FootShift()
+        self._place = StandingPlace()
         self._period = period
         self._fallback = Gains.suggested(motion.model, motion.qpos[0])
         plant.place(motion.qpos[0])
@@ -146,7 +147,7 @@ class WholeBody:
         self.problem = self.unknowns = None
         self._observer.place(state.qpos, state.qvel)
         active = self._schedule.active(0.0, self._observer.clearance())
-        self._shift.reset(self._observer.points(), self._reference.points[0], active)
+        self._place.reset(self._observer.points(), self._reference.points[0], active)
         self._torque[:] = 0.0
         self._position[:] = state.qpos[self._angles]
         self._velocity[:] = state.qvel[self._dofs]
@@ -173,8 +174,8 @@ class WholeBody:
         active = self._schedule.active(t, self._observer.clearance())
         instant = self._observer.instant(active)
         goal = self._reference.at(t)
-        shift = self._shift.follow(instant.points, goal.points, active, self._period)
-        return WholeBodyProblem.build(instant, goal.shifted(shift), self.tasks, self.constraints)
+        place = self._place.follow(instant.points, goal.points, active, self._period)
+        return WholeBodyProblem.build(instant, goal.placed(place), self.tasks, self.constraints)
 
     def _obey(self, instant: Instant, unknowns: Array) -> Command:
         dt, keep = self._period, math.exp(-self._period / TONE_MEMORY)

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+from enpointe.controllers.wholebody.standing_place import Placement
 
 __all__ = ["Goal"]
 
@@ -43,9 +46,35 @@ class Goal(NamedTuple):
     point_velocity: Array
     point_acceleration: Array
 
-    def shifted(self, shift: Array) -> Goal:
-        """The same, moved over the floor by `shift` (2,), m."""
-        offset = np.array((*shift.tolist(), 0.0))
-        qpos = self.qpos.copy()
-        qpos[:3] += offset
-        return self._replace(qpos=qpos, com=self.com + offset, points=self.points + offset)
+    def placed(self, place: Placement) -> Goal:
+        """The same elsewhere on the floor."""
+        rotation = place.rotation()
+        turned = rotation.T
+        offset = np.array((*place.offset.tolist(), 0.0))
+        qpos, qvel, qacc = self.qpos.copy(), self.qvel.copy(), self.qacc.copy()
+        qpos[:3] = rotation @ qpos[:3] + offset
+        half = 0.5 * place.yaw
+        w, x, y, z = qpos[3:7].tolist()
+        cosine, sine = math.cos(half), math.sin(half)
+        qpos[3:7] = (
+            cosine * w - sine * z,
+            cosine * x - sine * y,
+            cosine * y + sine * x,
+            cosine * z + sine * w,
+        )
+        # Of a free joint only the linear rates are in the world's frame.
+        qvel[:3], qacc[:3] = rotation @ qvel[:3], rotation @ qacc[:3]
+        return Goal(
+            qpos=qpos,
+            qvel=qvel,
+            qacc=qacc,
+            com=rotation @ self.com + offset,
+            com_velocity=rotation @ self.com_velocity,
+            com_acceleration=rotation @ self.com_acceleration,
+            angular_momentum=rotation @ self.angular_momentum,
+            angular_momentum_rate=rotation @ self.angular_momentum_rate,
+            root_rotation=rotation @ self.root_rotation,
+            points=self.points @ turned + offset,
+            point_velocity=self.point_velocity @ turned,
+            point_acceleration=self.point_acceleration @ turned,
+        )

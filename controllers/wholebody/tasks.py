@@ -113,23 +113,29 @@ class AngularMomentum:
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """A sole that bears stays where it is:  J qacc = -J' v - k J v.
+    """A sole that bears stays where it is, on the floor:  J qacc = -J' v - k J v - s h.
 
-    A wish and not a constraint, since six points of one foot can't all be kept independently.
+    h is its height above the floor, upwards, where it has not quite come down: weight is counted
+    on it already. A wish and not a constraint, since six points of one foot can't all be kept
+    independently.
 
     Attributes:
         weight: Per (m/s^2)^2.
         damping: k, 1/s.
+        stiffness: s, 1/s^2.
     """
 
     name: ClassVar[str] = "contact"
     weight: float = 300.0
-    damping: float = 30.0
+    damping: float = 40.0
+    stiffness: float = 400.0
 
     def rows(self, instant: Instant, goal: Goal) -> Rows:
         active = instant.active
         jacobian = instant.jacobians.take(active, axis=0).reshape(-1, instant.nv)
-        target = -(instant.drifts + self.damping * instant.velocities)[active].ravel()
+        towards = -(instant.drifts + self.damping * instant.velocities)[active]
+        towards[:, 2] -= self.stiffness * np.maximum(instant.points[active, 2], 0.0)
+        target = towards.ravel()
         return Rows(jacobian, target, repeated(self.weight, len(target)), instant.accelerations)
 
 

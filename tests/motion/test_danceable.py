@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.ndimage import binary_erosion
 
 from enpointe.controllers import Recording, WholeBody, perform
 from enpointe.models import dancer_model
@@ -135,14 +134,10 @@ def test_a_step_too_far_is_said_to_be_one(length: float) -> None:
 
 @pytest.mark.parametrize("score", MOVING)
 def test_feet_that_bear_keep_their_places(score: str) -> None:
-    """From 20 ms after a sole has come down: until then it is averaged with its way there."""
     made = danceable(score)
     before, after = made.contacts, contact_schedule(made.motion)
     moved = np.linalg.norm(after.points - before.points, axis=2)
-    window = np.ones((2 * round(0.02 / np.median(np.diff(before.time))) + 1, 1), dtype=bool)
-    settled = binary_erosion(before.bears, window, border_value=1)
-    assert moved[settled].max() < 0.001
-    assert moved[before.bears].max() < 0.005
+    assert moved[before.bears].max() < 0.001
 
 
 @pytest.mark.parametrize("score", MOVING)
@@ -156,15 +151,7 @@ def test_the_centre_of_mass_follows_the_plan(score: str) -> None:
         assert np.abs(data.subtree_com[0] - made.weight.com[k])[:2].max() < 0.005
 
 
-ARMS_GIVE = pytest.mark.xfail(
-    reason="6.4 degrees of an arm: the height of the weight is asked for so firmly that arms give"
-)
-
-
-@pytest.mark.parametrize(
-    "score",
-    [pytest.param(s, marks=ARMS_GIVE if s == "adage-developpe" else ()) for s in MOVING],
-)
+@pytest.mark.parametrize("score", MOVING)
 def test_it_is_still_the_same_dance(score: str) -> None:
     """The same beats; arms as they were; legs within what moving the weight takes."""
     asked, made = dance(score).motion, danceable(score).motion
@@ -211,17 +198,12 @@ def test_it_is_danced_under_gravity(score: str) -> None:
 
 @pytest.mark.slow
 def test_eight_releves_rise_and_come_down_in_time() -> None:
-    """Both heels leave the floor eight times, the balls of the feet never, and beats are kept.
-
-    A heel that bounces as it comes down, for less than what the plan calls chatter, has not left.
-    """
+    """Both heels leave the floor eight times, the balls of the feet never, and beats are kept."""
     recording, _ = performed("releve")
     forces = np.asarray(recording.channels["sole_force"])[::5]
     states = [foot_states(MODEL, force) for force in forces]
-    chatter = SHORTEST / (5 * recording.period)
     for side in ("left", "right"):
-        stretches = [(key, len(list(run))) for key, run in groupby(s[side] for s in states)]
-        assert {key for key, _ in stretches} == {FootState.FLAT, FootState.DEMI_POINTE}
-        lasting = [key for key, _ in groupby(key for key, n in stretches if n >= chatter)]
-        assert lasting.count(FootState.DEMI_POINTE) == 8
+        seen = [key for key, _ in groupby(state[side] for state in states)]
+        assert set(seen) == {FootState.FLAT, FootState.DEMI_POINTE}
+        assert seen.count(FootState.DEMI_POINTE) == 8
     assert danced_tempo(recording.as_motion(), recording.reference)[1] < 0.04
