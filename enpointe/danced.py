@@ -16,9 +16,11 @@ if TYPE_CHECKING:
     from enpointe.motion.weight_plan import WeightPlan
     from enpointe.sim.measures import Measures
 
-__all__ = ["CONTROLLERS", "Danced", "Physics", "run_physics"]
+__all__ = ["CONTROLLERS", "HELD_UP", "Danced", "Physics", "run_physics"]
 
 CONTROLLERS = ("kinematic", "pd", "wholebody")
+HELD_UP = 1e-6
+"""A force on the root above this, N, is help."""
 
 
 @dataclass(frozen=True)

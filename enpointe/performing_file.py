@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from enpointe.captured import Captured, read_captured
-from enpointe.danced import CONTROLLERS, Danced, run_physics
+from enpointe.danced import CONTROLLERS, HELD_UP, Danced, run_physics
 from enpointe.errors import EnpointeError
 from enpointe.figures import FilePerformanceFigures, StretchFigures
 from enpointe.performing import reference
@@ -29,6 +29,10 @@ __all__ = ["FilePerformance", "perform_file"]
 SPEEDS = (0.1, 3.0)
 _TRIES = 4
 """How often a stretch is cut where its weight can't be held, and planned again."""
+_FALLS, _BEFORE_A_FALL = 2, 0.5
+"""How often a stretch is danced again without the fall, and s before it that are left out: a fall
+begins before the weight is past saving."""
+FELL = "she falls there when it is tried"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,7 +92,13 @@ class FilePerformance(Danced):
             said += f" {file.frame(fell)}"
         if not self.whole:
             said += f". The rest is not danced: {self._why_not()}"
-        return said + "."
+        return f"{said}. {self._help()}"
+
+    def _help(self) -> str:
+        force = 0.0 if self.measures is None else self.measures.root_force_max
+        if force > HELD_UP:
+            return f"Something held the pelvis with up to {force:.3g} N: no honest dance."
+        return "Nothing held her up: the force on the root was 0 N throughout."
 
     def _why_not(self) -> str:
         told: dict[str, list[str]] = {}
@@ -168,6 +178,7 @@ def perform_file(
     It is put on the dancer, feet on the floor; the longest stretch that feet can dance is taken;
     its weight is led to where the standing feet can hold it; she starts at rest and comes to rest,
     the first and last half second of the stretch taking a second each (`enpointe.motion.easing`).
+    Where she falls in a capture, that is told, and the longest stretch without the fall is danced.
 
     Args:
         path: A file of any format that `convert` reads, or of the dancer's own.
@@ -199,20 +210,43 @@ def perform_file(
     asked = _asked(captured, span)
     if controller == "kinematic":
         return _moved(captured, asked, speed)
-    chosen = _choose(captured, asked, speed)
-    motion, weight = _possible(captured, chosen.eased, controller, progress)
-    return FilePerformance(
-        controller=controller,
-        motion=motion,
-        physics=run_physics(motion, controller, progress),
-        weight=weight,
-        captured=captured,
-        asked=asked,
-        stretch=chosen.stretch,
-        others=chosen.others,
-        obstacles=chosen.obstacles,
-        eased=chosen.eased,
-    )
+    return _attempt(captured, asked, speed, controller, progress)
+
+
+def _attempt(
+    captured: Captured,
+    asked: tuple[float, float],
+    speed: float,
+    controller: str,
+    progress: Progress,
+) -> FilePerformance:
+    """Dance the longest stretch; where she falls in it, the longest that leaves the fall out."""
+    from enpointe.motion.stretches import Obstacle
+
+    falls: list[Obstacle] = []
+    chosen = _choose(captured, asked, speed, falls)
+    while True:
+        motion, weight = _possible(captured, chosen.eased, controller, progress)
+        dance = FilePerformance(
+            controller=controller,
+            motion=motion,
+            physics=run_physics(motion, controller, progress),
+            weight=weight,
+            captured=captured,
+            asked=asked,
+            stretch=chosen.stretch,
+            others=chosen.others,
+            obstacles=chosen.obstacles,
+            eased=chosen.eased,
+        )
+        fell = dance.fell_in_file
+        if fell is None or captured.stored or len(falls) == _FALLS:
+            return dance
+        falls.append(Obstacle(max(fell - _BEFORE_A_FALL, 0.0), fell, FELL))
+        try:
+            chosen = _choose(captured, asked, speed, falls)
+        except EnpointeError:
+            return dance
 
 
 def _asked(captured: Captured, span: tuple[float, float] | None) -> tuple[float, float]:
@@ -255,8 +289,10 @@ class _Chosen:
     eased: Eased
 
 
-def _choose(captured: Captured, asked: tuple[float, float], speed: float) -> _Chosen:
-    """The longest stretch whose weight can be held.
+def _choose(
+    captured: Captured, asked: tuple[float, float], speed: float, falls: Iterable[Obstacle]
+) -> _Chosen:
+    """The longest stretch whose weight can be held, and in which she has not fallen.
 
     Raises:
         EnpointeError: There is none.
@@ -265,7 +301,8 @@ def _choose(captured: Captured, asked: tuple[float, float], speed: float) -> _Ch
     from enpointe.motion.stretches import obstacles, outside_the_feet, stretches
     from enpointe.motion.weight_plan import plan_weight
 
-    found = list(obstacles(captured.motion, captured.contacts))
+    found = [*obstacles(captured.motion, captured.contacts), *falls]
+    found.sort(key=lambda each: each.start)
     for _ in range(_TRIES):
         possible = stretches(captured.motion, captured.contacts, found, asked)
         if not possible:

@@ -25,7 +25,7 @@ __all__ = ["IN_THE_AIR", "Obstacle", "Stretch", "obstacles", "outside_the_feet",
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-IN_THE_AIR = "in the air: jumps are not danced from files yet"
+IN_THE_AIR = "in the air, and jumps are not danced from files yet"
 SHORTEST_STRETCH = 0.5
 """s: less is not worth standing up for."""
 _LOOKED_AT = 25.0

@@ -20,9 +20,10 @@ from enpointe.report.blocks import (
     data_uri,
 )
 from enpointe.report.films import film_of
-from enpointe.report.pages import PICTURE_WIDTH, film_section, footer, physics_sections
+from enpointe.report.pages import PICTURE_WIDTH
 from enpointe.report.pictures import contact_sheet, fitted_view, jpeg, stills
 from enpointe.report.promises import contacts_section
+from enpointe.report.shared import film_section, footer, physics_sections
 from enpointe.sim.camera import View
 
 __all__ = ["draw_file"]
@@ -46,7 +47,7 @@ def draw_file(
     pairs = [[drawn[i][0], drawn[i + MOMENTS][0]] for i in range(MOMENTS)]
     film = film_of({"": dance}, progress) if video else None
     titles = [_moment(dance, float(t)) for t in times]
-    sheet = contact_sheet(pairs, titles, [("above the file, below danced", False)] * MOMENTS)
+    sheet = contact_sheet(pairs, titles, [("left the file, right danced", False)] * MOMENTS)
     parts = {"moments": ("moments.png", sheet)}
     if film is not None:
         parts["video"] = (film.name, film.data)

@@ -8,9 +8,7 @@ from dataclasses import dataclass
 import mujoco
 from PIL import Image
 
-import enpointe
 from enpointe.comparing import Comparison
-from enpointe.danced import Danced
 from enpointe.models import KeyPose
 from enpointe.motion import Effort, Motion
 from enpointe.motion.wrist import LogisticFit, fit_logistic, wrist_profiles
@@ -23,7 +21,6 @@ from enpointe.report.blocks import (
     Block,
     Cell,
     Chart,
-    Film,
     Folded,
     Gallery,
     Page,
@@ -39,22 +36,17 @@ from enpointe.report.blocks import (
 from enpointe.report.certificates import certificate_tables, rules_sections
 from enpointe.report.chart import GREY, LEFT, RIGHT
 from enpointe.report.films import FilmFile
-from enpointe.report.forces import force_chart
-from enpointe.report.ground import margin_chart, support_chart
-from enpointe.report.joints import joint_chart, joint_rows
 from enpointe.report.movements import Movement, danced_tempo, movements
 from enpointe.report.pictures import jpeg
 from enpointe.report.promises import promises_sections
+from enpointe.report.shared import film_section, footer, physics_sections
 from enpointe.report.wrists import MOVEMENTS_MAX, LineStyle, Series, wrist_chart
 
 __all__ = [
     "PICTURE_WIDTH",
     "Material",
     "comparison_page",
-    "film_section",
-    "footer",
     "performance_page",
-    "physics_sections",
     "poses_page",
 ]
 
@@ -243,19 +235,6 @@ def _score_section(
     return Section("stave", "Stave", (stave, text))
 
 
-def film_section(film: FilmFile | None, physical: bool) -> Section | None:
-    if film is None:
-        return None
-    caption = "Seen from the audience."
-    if physical:
-        caption += (
-            " On the floor under a dancer with weight, where the feet do not hide them: the "
-            "support in blue and, in red, the place below the centre of mass."
-        )
-    block = Film(data_uri(film.mime, film.data), film.mime, film.size, "The dance, filmed", caption)
-    return Section("film", "Film", (block,))
-
-
 def _poses_section(score: Score, poses: Sequence[KeyPose], material: Material) -> Section:
     pictures = []
     for frame, pose, views in zip(score.frames, poses, material.pictures, strict=True):
@@ -355,42 +334,6 @@ def _figure(value: float | None, places: int = 2) -> Cell:
     return Cell(text.replace("-", "−"), value)
 
 
-def physics_sections(performance: Danced) -> tuple[Section, ...]:
-    recording, measures = performance.recording, performance.measures
-    if recording is None or measures is None:
-        return ()
-    balance = (
-        Chart(
-            support_chart(recording, measures, "support"),
-            "Left: the soles as they stand and the support that they span (dashed), with the paths "
-            "of the centre of mass (red) and of the floor's pressure (grey). Right: the path of "
-            "the centre of mass alone, larger, with the beats. The audience is at the bottom.",
-        ),
-        Chart(
-            margin_chart(recording, measures, "margin"),
-            "How far inside the edge of the support the centre of mass is (red), and the "
-            "extrapolated centre of mass, where its speed is taking it (grey). While the grey line "
-            "is above the edge the feet that stand can stop the fall; below it the dancer has to "
-            "step or fall.",
-        ),
-        Chart(
-            force_chart(recording, measures, "forces"),
-            "What the floor gives back under each foot; together they are the body's weight when "
-            "the dancer is still. Below, what each foot stands on: flat, demi-pointe, pointe or "
-            "the heel alone, the stronger the higher; nothing is drawn while it is in the air.",
-        ),
-    )
-    joints = Chart(
-        joint_chart(joint_rows(recording, measures), "joints"),
-        "How far each joint was behind what was asked of it, the worst at the top, and the "
-        "greatest torque that it gave.",
-    )
-    return (
-        Section("balance", "Balance and the floor", balance),
-        Section("joints", "Joint by joint", (joints,)),
-    )
-
-
 def _certificate_section(poses: Sequence[KeyPose], *, opened: bool = False) -> Section:
     tables = certificate_tables(poses)
     solved = f"Solved in {sum(p.solve_ms for p in poses):.0f} ms in all."
@@ -399,11 +342,3 @@ def _certificate_section(poses: Sequence[KeyPose], *, opened: bool = False) -> S
         count = len(poses)
         blocks = (Folded(f"Every rule at each of {count} key poses", tables),)
     return Section("certificates", "Certificates", (Paragraph(solved), *blocks))
-
-
-def footer(model: mujoco.MjModel) -> str:
-    mass = float(model.body_mass.sum())
-    return (
-        f"Made by enpointe {enpointe.__version__} with MuJoCo {mujoco.__version__}; "
-        f"the dancer weighs {mass:.1f} kg."
-    )

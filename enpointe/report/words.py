@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from enpointe.comparing import Comparison
-from enpointe.danced import Danced
+from enpointe.danced import HELD_UP, Danced
 from enpointe.models import KeyPose
 from enpointe.performing import Performance
 from enpointe.report.blocks import Cell, Row, Table
@@ -23,8 +23,6 @@ __all__ = [
 ]
 
 DASH = "–"
-HELD_UP = 1e-6
-"""A force on the root above this, N, is help."""
 
 
 def _millimetres(value: float) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -140,6 +141,35 @@ def test_a_damaged_file_is_refused_as_a_motion(
     with pytest.raises(EnpointeError, match="perform_file"):
         enpointe.perform(home / "bad.bvh")
     assert [p.name for p in home.iterdir()] == ["bad.bvh"]
+
+
+@pytest.mark.slow
+def test_a_fall_is_told_and_danced_without(still: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """She is made to fall once: 2.7 s after the start are 1.7 s of the file."""
+    from enpointe import captured, danced, performing_file
+
+    def as_capture(path: Path, **_: object) -> captured.Captured:
+        return replace(captured.read_captured(path), stored=False)
+
+    tried: list[Motion] = []
+
+    def falls_once(motion: Motion, *given: object) -> danced.Physics:
+        tried.append(motion)
+        physics = danced.run_physics(motion, "pd")
+        measures = replace(physics.measures, fell_at=2.7) if len(tried) == 1 else physics.measures
+        return replace(physics, measures=measures)
+
+    monkeypatch.setattr(performing_file, "read_captured", as_capture)
+    monkeypatch.setattr(performing_file, "run_physics", falls_once)
+    dance = enpointe.perform_file(still, controller="pd")
+    assert len(tried) == 2
+    assert dance.stood
+    assert not dance.completed
+    (fall,) = dance.obstacles
+    assert fall.end == pytest.approx(1.7, abs=0.02)
+    assert dance.stretch.start >= fall.end
+    assert dance.others[0].end <= fall.start
+    assert "The rest is not danced: she falls there" in dance.verdict
 
 
 @pytest.mark.slow
