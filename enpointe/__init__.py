@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from enpointe.notation import load_score as load_score
     from enpointe.performing import Performance as Performance
     from enpointe.performing import perform as perform
+    from enpointe.performing_file import FilePerformance as FilePerformance
+    from enpointe.performing_file import perform_file as perform_file
     from enpointe.posing import Poses as Poses
     from enpointe.posing import pose as pose
     from enpointe.report import write_report as write_report
@@ -41,6 +43,7 @@ _HOMES = {
     "Comparison": "enpointe.comparing",
     "Conversion": "enpointe.converting",
     "EnpointeError": "enpointe.errors",
+    "FilePerformance": "enpointe.performing_file",
     "Notation": "enpointe.notating",
     "Performance": "enpointe.performing",
     "Poses": "enpointe.posing",
@@ -51,6 +54,7 @@ _HOMES = {
     "load_score": "enpointe.notation",
     "notate": "enpointe.notating",
     "perform": "enpointe.performing",
+    "perform_file": "enpointe.performing_file",
     "pose": "enpointe.posing",
     "recognise": "enpointe.notating",
     "Sweep": "enpointe.sweeping",
@@ -63,6 +67,7 @@ __all__ = [
     "Comparison",
     "Conversion",
     "EnpointeError",
+    "FilePerformance",
     "Notation",
     "Performance",
     "Poses",
@@ -75,6 +80,7 @@ __all__ = [
     "load_score",
     "notate",
     "perform",
+    "perform_file",
     "pose",
     "recognise",
     "sweep",

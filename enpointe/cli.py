@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import sys
 from dataclasses import asdict
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
@@ -15,6 +14,10 @@ import enpointe
 from enpointe.console import Console, rows
 from enpointe.errors import EnpointeError
 from enpointe.options import (
+    BAD_INPUT,
+    DONE,
+    NO,
+    ControllerName,
     ConversionOptions,
     DancerOptions,
     Effort,
@@ -30,12 +33,10 @@ from enpointe.options import (
     find_metre,
     unbundled,
 )
+from enpointe.perform_verb import perform_verb
 from enpointe.servo_verbs import servo_verbs
 
 __all__ = ["app", "main"]
-
-DONE, NO, BAD_INPUT = 0, 1, 2
-"""Exit codes: the job is done; the answer is no; the input is bad."""
 
 app = typer.Typer(
     name="enpointe",
@@ -44,67 +45,8 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
+app.add_typer(perform_verb)
 app.add_typer(servo_verbs)
-
-
-class ControllerName(StrEnum):
-    KINEMATIC = "kinematic"
-    PD = "pd"
-    WHOLEBODY = "wholebody"
-
-
-class BodyName(StrEnum):
-    DANCER = "dancer"
-
-
-@app.command()
-@unbundled
-def perform(
-    source: Score,
-    *,
-    effort: Effort = None,
-    tempo: Tempo = None,
-    controller: Annotated[
-        ControllerName,
-        typer.Option(
-            help="pd dances under gravity on two feet; wholebody balances on one as well; kinematic"
-            " only moves."
-        ),
-    ] = ControllerName.PD,
-    hold: Annotated[
-        float | None,
-        typer.Option(
-            help="Hold the last pose for so many seconds; INPUT may then be a single pose, named as"
-            " for `enpointe pose`."
-        ),
-    ] = None,
-    body: Annotated[BodyName, typer.Option(help="Who dances.")] = BodyName.DANCER,
-    dancer: StyledDancerOptions,
-    video: Video = True,
-    output: OutputOptions,
-) -> int:
-    """Dance a score under gravity, and write a report of it."""
-    from enpointe.posing import find_score
-
-    console = output.console()
-    with console.progress() as progress:
-        score = enpointe.load_score(source) if hold is None else find_score(source)
-        dance = enpointe.perform(
-            score,
-            effort=effort,
-            tempo=tempo,
-            controller=controller.value,
-            hold=hold,
-            style=dancer.style(),
-            dancer=dancer.anthropometry(),
-            progress=progress,
-        )
-        folder = output.folder(source)
-        report = enpointe.write_report(dance, folder, video=video, progress=progress)
-        files = {**report, **dance.save(folder)}
-    console.warn(report.warning)
-    console.show(dance.summary(), files, folder)
-    return DONE if dance.completed and not dance.broken else NO
 
 
 @app.command()

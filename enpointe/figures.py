@@ -12,6 +12,7 @@ __all__ = [
     "ComparisonFigures",
     "DifferenceFigures",
     "EffortFigures",
+    "FilePerformanceFigures",
     "FitFigures",
     "FlightFigures",
     "KinematicFigures",
@@ -21,6 +22,7 @@ __all__ = [
     "PosesFigures",
     "RuleFigures",
     "RuleKeptFigures",
+    "StretchFigures",
     "SweepFailure",
     "SweepFigures",
 ]
@@ -199,3 +201,36 @@ class SweepFigures(TypedDict):
     runs_per_second: float | None
     root_force_max: float | None
     failures: list[SweepFailure]
+
+
+class StretchFigures(TypedDict):
+    """A time of a file, s and frames of it."""
+
+    start: float
+    end: float
+    first_frame: int
+    last_frame: int
+    why: str | None
+
+
+class FilePerformanceFigures(PhysicalFigures):
+    """A motion file danced; what only a score has is empty."""
+
+    title: str
+    controller: str
+    effort: None
+    tempo: None
+    completed: bool
+    duration: float
+    rules_broken: list[str]
+    rules: list[RuleKeptFigures]
+    logistic: None
+    asked: list[float]
+    rate: float
+    first_frame: int
+    danced: StretchFigures
+    not_danced: list[StretchFigures]
+    could_be_danced: list[StretchFigures]
+    fell_at_in_file: float | None
+    fell_at_frame: int | None
+    warnings: list[str]

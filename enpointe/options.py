@@ -18,9 +18,14 @@ if TYPE_CHECKING:
     from enpointe.models import Anthropometry, Style
 
 __all__ = [
+    "BAD_INPUT",
+    "DONE",
+    "NO",
+    "ControllerName",
     "ConversionOptions",
     "DancerOptions",
     "Effort",
+    "FileOptions",
     "Json",
     "OutputOptions",
     "Quiet",
@@ -34,6 +39,16 @@ __all__ = [
     "find_metre",
     "unbundled",
 ]
+
+
+DONE, NO, BAD_INPUT = 0, 1, 2
+"""Exit codes: the job is done; the answer is no; the input is bad."""
+
+
+class ControllerName(StrEnum):
+    KINEMATIC = "kinematic"
+    PD = "pd"
+    WHOLEBODY = "wholebody"
 
 
 class SexName(StrEnum):
@@ -125,6 +140,41 @@ class ConversionOptions:
         Path | None,
         typer.Option("--map", help="A file of which joints or markers are which of hers."),
     ] = None
+
+
+@dataclass(frozen=True)
+class FileOptions:
+    """What of a motion file is danced, and how it is read."""
+
+    span: Annotated[
+        tuple[float, float] | None,
+        typer.Option(
+            metavar="START END",
+            help="Of a motion file: the seconds of it to dance; all if left out.",
+        ),
+    ] = None
+    speed: Annotated[
+        float | None, typer.Option(help="Of a motion file: how much faster than it; 1 if left out.")
+    ] = None
+    mapping: Annotated[
+        Path | None,
+        typer.Option("--map", help="Of a motion file: which joints are which, as a TOML file."),
+    ] = None
+    skeleton: Annotated[
+        Path | None, typer.Option(help="Of an AMC file: its ASF file, where it lies elsewhere.")
+    ] = None
+
+    def refuse(self, source: str) -> None:
+        """Refuse these options for a score.
+
+        Raises:
+            EnpointeError: One is given.
+        """
+        given = {"span": self.span, "speed": self.speed, "map": self.mapping}
+        given["skeleton"] = self.skeleton
+        for name, value in given.items():
+            if value is not None:
+                raise EnpointeError(f"{source} is a score: --{name} is for motion files")
 
 
 @dataclass(frozen=True)

@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from enpointe.captured import is_motion_file
+from enpointe.danced import CONTROLLERS, Danced, run_physics
 from enpointe.errors import EnpointeError
 from enpointe.figures import PerformanceFigures, RuleKeptFigures
 from enpointe.notation import Score, load_score
 from enpointe.preparing import Progress, prepare, silent
 
 if TYPE_CHECKING:
-    from enpointe.controllers import Recording
     from enpointe.models import Anthropometry, KeyPose, Style
     from enpointe.motion import Choreography, Effort, Interpolation, Motion, RuleKept
     from enpointe.motion.weight_plan import WeightPlan
     from enpointe.motion.wrist import LogisticFit
-    from enpointe.sim.measures import Measures
 
 __all__ = [
     "CONTROLLERS",
@@ -32,58 +31,36 @@ __all__ = [
 
 PHRASED = "as its phrases are marked"
 """The name of the effort of a dance whose phrases have qualities of their own."""
-CONTROLLERS = ("kinematic", "pd", "wholebody")
 
 
-@dataclass(frozen=True)
-class Performance:
-    """A dance, and everything that led to it.
+@dataclass(frozen=True, kw_only=True)
+class Performance(Danced):
+    """A score danced, and everything that led to it; see `Danced` for the rest.
 
     Attributes:
         choreography: The score solved on the dancer.
         effort: Quality that was asked.
         effort_name: Preset or numbers, or `PHRASED` where each phrase has its own.
         interpolation: How the key poses were joined.
-        controller: One of `CONTROLLERS`.
-        motion: The reference: what was to be danced.
-        recording: What happened; None for a kinematic performance.
-        measures: Figures of the recording; None for a kinematic performance.
         rules: Every rule over the whole movement, in between key poses too; empty for slerp, which
             asks nothing there.
-        shortfall: Most that the floor could not give of the force and moment that the movement
-            asks of it, N (moments over 1 m); None for a kinematic performance.
-        qp_failures: Periods for which the whole-body controller found no solution and fell back;
-            None for other controllers.
-        weight: Where the centre of mass was planned to go; None where no plan was needed.
     """
 
     choreography: Choreography
     effort: Effort
     effort_name: str
     interpolation: Interpolation
-    controller: str
-    motion: Motion
-    recording: Recording | None
-    measures: Measures | None
-    shortfall: float | None = None
     rules: tuple[RuleKept, ...] = ()
-    qp_failures: int | None = None
-    weight: WeightPlan | None = None
 
     @property
     def score(self) -> Score:
         """The score as it is written."""
         return self.choreography.written
 
-    @cached_property
-    def danced(self) -> Motion:
-        """What was really danced: the recording as a motion, or the motion itself."""
-        return self.motion if self.recording is None else self.recording.as_motion()
-
     @property
     def completed(self) -> bool:
         """Whether the dancer got to the end, and stands there."""
-        return self.measures is None or self.measures.fell_at is None
+        return self.stood
 
     @property
     def broken(self) -> tuple[tuple[KeyPose, str], ...]:
@@ -104,25 +81,6 @@ class Performance:
 
         return fit_logistic(wrist_profiles(self.danced))
 
-    def save(self, folder: Path) -> dict[str, Path]:
-        """Write `motion.npz` and, of a physical performance, `recording.npz` and `balance.csv`.
-
-        Returns:
-            The paths by name.
-        """
-        from enpointe.motion.npz import save_motion
-
-        files = {"motion": folder / "motion.npz"}
-        save_motion(self.danced, files["motion"])
-        if self.recording is not None:
-            files["recording"] = folder / "recording.npz"
-            self.recording.save(files["recording"])
-            from enpointe.sim.balance_table import balance_table
-
-            files["balance"] = folder / "balance.csv"
-            balance_table(self.recording).save(files["balance"])
-        return files
-
     def summary(self) -> PerformanceFigures:
         """The figures that `--json` prints, SI units; the names are a promise to scripts."""
         fit = self.danced_fit()
@@ -142,14 +100,7 @@ class Performance:
             "rules": [_rule_figures(kept) for kept in self.rules],
             "logistic": None if fit is None else {"b": fit.time, "x0": fit.weight, "rms": fit.rms},
         }
-        if self.recording is not None and self.measures is not None:
-            from enpointe.physical_figures import physical_figures
-
-            physical = physical_figures(self.recording, self.measures, self.shortfall, self.weight)
-            figures = {**figures, **physical}
-        if self.qp_failures is not None:
-            figures["qp_failures"] = self.qp_failures
-        return figures
+        return {**figures, **self.physical_figures()}
 
 
 def _rule_figures(kept: RuleKept) -> RuleKeptFigures:
@@ -206,6 +157,8 @@ def perform(
         True
     """
     # The score first, and before the engines load: a typing mistake should not wait for them.
+    if not isinstance(source, Score) and is_motion_file(source):
+        raise EnpointeError(f"{source} is a motion file, not a score: use enpointe.perform_file")
     score = source if isinstance(source, Score) else load_score(source)
     from enpointe.motion import Interpolation, find_effort
 
@@ -289,43 +242,18 @@ def dance(
         progress=lambda done, total: progress("movement", done, total),
     )
     rules = rules_kept(motion, ways)
-    if controller == "kinematic":
-        return Performance(
-            choreography,
-            effort,
-            effort_name,
-            interpolation,
-            controller,
-            motion,
-            None,
-            None,
-            rules=rules,
-        )
-    from enpointe.controllers import PD, FeedForward, WholeBody
-    from enpointe.controllers import perform as run
-    from enpointe.sim.body import SimulatedBody
-    from enpointe.sim.measures import measure
-
-    motion, weight = reference(motion, controller, progress)
-    planned = FeedForward.along(motion)
-    driver = WholeBody(motion) if controller == "wholebody" else PD(motion, feedforward=planned)
-    recording = run(
-        motion,
-        driver,
-        SimulatedBody.at_start_of(motion),
-        progress=lambda done, total: progress("dance", done, total),
-    )
+    weight, physics = None, None
+    if controller != "kinematic":
+        motion, weight = reference(motion, controller, progress)
+        physics = run_physics(motion, controller, progress)
     return Performance(
-        choreography,
-        effort,
-        effort_name,
-        interpolation,
-        controller,
-        motion,
-        recording,
-        measure(recording),
-        float(planned.shortfall.max()),
-        rules,
-        driver.workload.failures if isinstance(driver, WholeBody) else None,
-        weight,
+        controller=controller,
+        motion=motion,
+        physics=physics,
+        weight=weight,
+        choreography=choreography,
+        effort=effort,
+        effort_name=effort_name,
+        interpolation=interpolation,
+        rules=rules,
     )

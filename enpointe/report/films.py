@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from enpointe.performing import Performance
+from enpointe.danced import Danced
 from enpointe.preparing import Progress
 from enpointe.report.ground import support_at
 from enpointe.report.pictures import ASPECT, fitted_view
@@ -55,7 +55,7 @@ class FilmFile:
     size: tuple[int, int]
 
 
-def film_of(performances: Mapping[str, Performance], progress: Progress) -> FilmFile:
+def film_of(performances: Mapping[str, Danced], progress: Progress) -> FilmFile:
     """Film performances, side by side if there are several.
 
     Args:
@@ -107,7 +107,7 @@ def film_of(performances: Mapping[str, Performance], progress: Progress) -> Film
     return FilmFile(name, data, "video/mp4" if mp4 else "image/gif", first.size)
 
 
-def _view(performances: Mapping[str, Performance]) -> View:
+def _view(performances: Mapping[str, Danced]) -> View:
     """From the audience, a little above so that the floor is seen."""
     poses = []
     for performance in performances.values():
@@ -118,7 +118,7 @@ def _view(performances: Mapping[str, Performance]) -> View:
     return fitted_view(model, poses, View(elevation=-9.0))
 
 
-def _overlays(performance: Performance) -> Callable[[int], Overlays | None] | None:
+def _overlays(performance: Danced) -> Callable[[int], Overlays | None] | None:
     """The CoM's place on the floor and the support polygon, for a physical performance."""
     recording = performance.recording
     if recording is None:

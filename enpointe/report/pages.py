@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import mujoco
 from PIL import Image
 
-import enpointe
 from enpointe.comparing import Comparison
 from enpointe.models import KeyPose
 from enpointe.motion import Effort, Motion
@@ -22,7 +21,6 @@ from enpointe.report.blocks import (
     Block,
     Cell,
     Chart,
-    Film,
     Folded,
     Gallery,
     Page,
@@ -38,15 +36,19 @@ from enpointe.report.blocks import (
 from enpointe.report.certificates import certificate_tables, rules_sections
 from enpointe.report.chart import GREY, LEFT, RIGHT
 from enpointe.report.films import FilmFile
-from enpointe.report.forces import force_chart
-from enpointe.report.ground import margin_chart, support_chart
-from enpointe.report.joints import joint_chart, joint_rows
 from enpointe.report.movements import Movement, danced_tempo, movements
 from enpointe.report.pictures import jpeg
 from enpointe.report.promises import promises_sections
+from enpointe.report.shared import film_section, footer, physics_sections
 from enpointe.report.wrists import MOVEMENTS_MAX, LineStyle, Series, wrist_chart
 
-__all__ = ["Material", "comparison_page", "performance_page", "poses_page"]
+__all__ = [
+    "PICTURE_WIDTH",
+    "Material",
+    "comparison_page",
+    "performance_page",
+    "poses_page",
+]
 
 PICTURE_WIDTH = 300
 VARIANT_STYLES: dict[str, tuple[str, LineStyle, float, int]] = {
@@ -114,12 +116,12 @@ def performance_page(performance: Performance, material: Material) -> Page:
         _score_section(
             choreography.score, material, tuple(choreography.key_times), choreography.tempo
         ),
-        _film_section(material, performance.measures is not None),
+        film_section(material.film, performance.measures is not None),
         _poses_section(choreography.score, choreography.key_poses, material),
         _wrist_section(ways, series, performance.effort),
         Section("effort", "Effort asked, and what came out", (_effort_table(performance),)),
         *promises_sections(figures),
-        *_physics_sections(performance),
+        *physics_sections(performance),
         *rules_sections(performance.rules),
         _certificate_section(choreography.key_poses),
     ]
@@ -130,7 +132,7 @@ def performance_page(performance: Performance, material: Material) -> Page:
         _facts(performance),
         material.warning,
         tuple(s for s in sections if s is not None),
-        _footer(performance.motion.model),
+        footer(performance.motion.model),
     )
 
 
@@ -167,7 +169,7 @@ def comparison_page(comparison: Comparison, material: Material) -> Page:
             tuple(first.choreography.key_times),
             first.choreography.tempo,
         ),
-        _film_section(material, True),
+        film_section(material.film, True),
         _wrist_section(movements(first.choreography), series, first.effort),
         Section(
             "fits",
@@ -186,7 +188,7 @@ def comparison_page(comparison: Comparison, material: Material) -> Page:
         _facts(first),
         material.warning,
         tuple(s for s in sections if s is not None),
-        _footer(first.motion.model),
+        footer(first.motion.model),
     )
 
 
@@ -205,7 +207,7 @@ def poses_page(poses: Poses, material: Material, model: mujoco.MjModel) -> Page:
         (("method", score.method), ("key poses", str(len(poses.key_poses)))),
         material.warning,
         sections,
-        _footer(model),
+        footer(model),
     )
 
 
@@ -231,20 +233,6 @@ def _score_section(
     stave = Stave(material.stave, caption, len(score.frames), times if seeks else ())
     text = Folded("The score as text", (Verbatim(format_score(score)),))
     return Section("stave", "Stave", (stave, text))
-
-
-def _film_section(material: Material, physical: bool) -> Section | None:
-    film = material.film
-    if film is None:
-        return None
-    caption = "Seen from the audience."
-    if physical:
-        caption += (
-            " On the floor under a dancer with weight, where the feet do not hide them: the "
-            "support in blue and, in red, the place below the centre of mass."
-        )
-    block = Film(data_uri(film.mime, film.data), film.mime, film.size, "The dance, filmed", caption)
-    return Section("film", "Film", (block,))
 
 
 def _poses_section(score: Score, poses: Sequence[KeyPose], material: Material) -> Section:
@@ -346,42 +334,6 @@ def _figure(value: float | None, places: int = 2) -> Cell:
     return Cell(text.replace("-", "−"), value)
 
 
-def _physics_sections(performance: Performance) -> tuple[Section, ...]:
-    recording, measures = performance.recording, performance.measures
-    if recording is None or measures is None:
-        return ()
-    balance = (
-        Chart(
-            support_chart(recording, measures, "support"),
-            "Left: the soles as they stand and the support that they span (dashed), with the paths "
-            "of the centre of mass (red) and of the floor's pressure (grey). Right: the path of "
-            "the centre of mass alone, larger, with the beats. The audience is at the bottom.",
-        ),
-        Chart(
-            margin_chart(recording, measures, "margin"),
-            "How far inside the edge of the support the centre of mass is (red), and the "
-            "extrapolated centre of mass, where its speed is taking it (grey). While the grey line "
-            "is above the edge the feet that stand can stop the fall; below it the dancer has to "
-            "step or fall.",
-        ),
-        Chart(
-            force_chart(recording, measures, "forces"),
-            "What the floor gives back under each foot; together they are the body's weight when "
-            "the dancer is still. Below, what each foot stands on: flat, demi-pointe, pointe or "
-            "the heel alone, the stronger the higher; nothing is drawn while it is in the air.",
-        ),
-    )
-    joints = Chart(
-        joint_chart(joint_rows(recording, measures), "joints"),
-        "How far each joint was behind what was asked of it, the worst at the top, and the "
-        "greatest torque that it gave.",
-    )
-    return (
-        Section("balance", "Balance and the floor", balance),
-        Section("joints", "Joint by joint", (joints,)),
-    )
-
-
 def _certificate_section(poses: Sequence[KeyPose], *, opened: bool = False) -> Section:
     tables = certificate_tables(poses)
     solved = f"Solved in {sum(p.solve_ms for p in poses):.0f} ms in all."
@@ -390,11 +342,3 @@ def _certificate_section(poses: Sequence[KeyPose], *, opened: bool = False) -> S
         count = len(poses)
         blocks = (Folded(f"Every rule at each of {count} key poses", tables),)
     return Section("certificates", "Certificates", (Paragraph(solved), *blocks))
-
-
-def _footer(model: mujoco.MjModel) -> str:
-    mass = float(model.body_mass.sum())
-    return (
-        f"Made by enpointe {enpointe.__version__} with MuJoCo {mujoco.__version__}; "
-        f"the dancer weighs {mass:.1f} kg."
-    )

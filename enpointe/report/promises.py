@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from enpointe.figures import BeatFigures, PerformanceFigures, StanceFigures
+from enpointe.figures import BeatFigures, PerformanceFigures, PhysicalFigures
 from enpointe.report.blocks import Cell, Paragraph, Row, Section, Table
 from enpointe.report.words import DASH
 
-__all__ = ["promises_sections"]
+__all__ = ["contacts_section", "promises_sections"]
 
 
 def promises_sections(figures: PerformanceFigures) -> tuple[Section, ...]:
@@ -14,28 +14,35 @@ def promises_sections(figures: PerformanceFigures) -> tuple[Section, ...]:
     if "contacts_planned" not in figures:
         return ()
     beats = figures["beats_not_kept"]
-    missed, unplanned = figures["contacts_missed"], figures["contacts_unplanned"]
-    blocks: list[Paragraph | Table] = [Paragraph(_sentence(figures))]
+    blocks: list[Paragraph | Table] = [Paragraph(f"{_beats(figures)} {_contacts(figures)}")]
     if beats:
         blocks.append(_beats_table(beats))
-    if missed or unplanned:
-        blocks.append(_contacts_table(missed, unplanned))
+    blocks += _contacts_tables(figures)
     return (Section("promises", "Beats and contacts", tuple(blocks)),)
 
 
-def _sentence(figures: PerformanceFigures) -> str:
-    planned, missed = figures["contacts_planned"], len(figures["contacts_missed"])
+def contacts_section(figures: PhysicalFigures) -> Section:
+    """The section of contacts alone, of a movement without beats."""
+    said = Paragraph(_contacts(figures))
+    return Section("promises", "Contacts", (said, *_contacts_tables(figures)))
+
+
+def _beats(figures: PerformanceFigures) -> str:
     late = figures["lateness_max"]
-    beats = (
+    return (
         "Every key pose was reached within 40 ms of its time"
         + (f", {1000 * late:.0f} ms at most." if late is not None else ".")
         if not figures["beats_not_kept"]
         else "Beats that were not kept are listed: reached more than 40 ms early or late, or with "
         "weight that no floor under the planned feet could hold."
     )
+
+
+def _contacts(figures: PhysicalFigures) -> str:
+    planned, missed = figures["contacts_planned"], len(figures["contacts_missed"])
     feet = f"The feet took weight {planned - missed} of the {planned} times that were planned"
     other = len(figures["contacts_unplanned"])
-    return f"{beats} {feet}, and {other or 'never'}{' times' if other > 1 else ''} besides."
+    return f"{feet}, and {other or 'never'}{' times' if other > 1 else ''} besides."
 
 
 def _beats_table(beats: list[BeatFigures]) -> Table:
@@ -60,7 +67,10 @@ def _lateness(late: float | None) -> Cell:
     )
 
 
-def _contacts_table(missed: list[StanceFigures], unplanned: list[StanceFigures]) -> Table:
+def _contacts_tables(figures: PhysicalFigures) -> list[Table]:
+    missed, unplanned = figures["contacts_missed"], figures["contacts_unplanned"]
+    if not (missed or unplanned):
+        return []
     rows = tuple(
         Row(
             f"{stance['side']} foot, {kind}",
@@ -73,4 +83,4 @@ def _contacts_table(missed: list[StanceFigures], unplanned: list[StanceFigures])
         for kind, stances in (("missed", missed), ("not planned", unplanned))
         for stance in stances
     )
-    return Table("Contacts not as planned", ("", "from", "to", "force at most"), rows)
+    return [Table("Contacts not as planned", ("", "from", "to", "force at most"), rows)]

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from enpointe.comparing import Comparison
+from enpointe.danced import HELD_UP, Danced
 from enpointe.models import KeyPose
 from enpointe.performing import Performance
 from enpointe.report.blocks import Cell, Row, Table
@@ -22,8 +23,6 @@ __all__ = [
 ]
 
 DASH = "–"
-HELD_UP = 1e-6
-"""A force on the root above this, N, is help."""
 
 
 def _millimetres(value: float) -> str:
@@ -97,7 +96,7 @@ _FIGURES = (
 )
 
 
-def verdict(performance: Performance) -> tuple[str, bool | None]:
+def verdict(performance: Danced) -> tuple[str, bool | None]:
     """What a performance honestly is, and whether that is good news (None for neither)."""
     recording, measures = performance.recording, performance.measures
     if recording is None or measures is None:
@@ -113,7 +112,7 @@ def verdict(performance: Performance) -> tuple[str, bool | None]:
         )
     else:
         root = "Nothing held the dancer up: the force on the root was 0 N throughout."
-    if performance.completed:
+    if performance.stood:
         text = (
             f"A physical dance under gravity, completed: {performance.danced.duration:.1f} s "
             f"on the dancer's own feet. {root}"
@@ -158,7 +157,7 @@ def rules_sentence(poses: tuple[KeyPose, ...]) -> str:
     return f"{len(broken)} of {len(poses)} key poses break a rule: {', '.join(broken)}."
 
 
-def figure_table(performance: Performance, summary: Mapping[str, object]) -> Table:
+def figure_table(performance: Danced, summary: Mapping[str, object]) -> Table:
     """The figures of one performance with their meaning."""
     rows = [
         Row(f.label, (_cell(f, summary), Cell(f.meaning)), f.name)

@@ -11,10 +11,12 @@ from enpointe.models import KeyPose
 from enpointe.notation import Score
 from enpointe.notation.stave import stave_svg
 from enpointe.performing import Performance
+from enpointe.performing_file import FilePerformance
 from enpointe.posing import Poses
 from enpointe.preparing import Progress, silent
 from enpointe.report import words
 from enpointe.report.blocks import Page
+from enpointe.report.file_page import draw_file
 from enpointe.report.films import FilmFile, film_of
 from enpointe.report.page import render
 from enpointe.report.pages import Material, comparison_page, performance_page, poses_page
@@ -37,7 +39,7 @@ class ReportFiles(dict[str, Path]):
 
 
 def write_report(
-    dance: Performance | Comparison | Poses,
+    dance: Performance | Comparison | Poses | FilePerformance,
     out: Path,
     *,
     video: bool = True,
@@ -46,10 +48,11 @@ def write_report(
     """Write a report of a dance into a folder.
 
     `report.html` holds everything in itself; beside it stand `stave.svg`, `key-poses.png` and the
-    film (`dance.mp4`, or `dance.gif` without the video extra).
+    film (`dance.mp4`, or `dance.gif` without the video extra). Of a motion file there is no stave,
+    and `moments.png` instead of key poses.
 
     Args:
-        dance: What `perform`, `compare` or `pose` returned.
+        dance: What `perform`, `perform_file`, `compare` or `pose` returned.
         out: The folder; made if it isn't there.
         video: Whether to paint a film; poses have none.
         progress: Told how far it is.
@@ -87,9 +90,11 @@ def write_report(
 
 
 def _draw(
-    dance: Performance | Comparison | Poses, video: bool, progress: Progress
+    dance: Performance | Comparison | Poses | FilePerformance, video: bool, progress: Progress
 ) -> tuple[dict[str, tuple[str, bytes]], Page, str | None]:
     """The files beside the page by name, the page, and the warning."""
+    if isinstance(dance, FilePerformance):
+        return draw_file(dance, video, progress)
     if isinstance(dance, Poses):
         score, poses = dance.score, dance.key_poses
         model = dance.model

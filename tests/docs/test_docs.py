@@ -87,7 +87,8 @@ def test_every_command_exists(page: str, words: list[str]) -> None:
         from enpointe.motion import find_effort
 
         find_effort(given["--effort"])
-    if verb in ("perform", "compare", "sweep") and rest and not rest[0].endswith(".bmn"):
+    file = (".bmn", ".amc", ".bvh", ".npz") if verb == "perform" else (".bmn",)
+    if verb in ("perform", "compare", "sweep") and rest and not rest[0].endswith(file):
         poses = enpointe.notation.names() if "--hold" in rest else ()
         assert rest[0] in (*enpointe.notation.shipped_scores(), *poses)
 
@@ -119,8 +120,6 @@ def test_every_table_stands_somewhere(tables: ModuleType) -> None:
         for match in tables.MARKED.finditer(page.read_text(encoding="utf-8"))
     }
     assert used == set(tables.TABLES)
-
-
 def test_pictures_are_small_and_used() -> None:
     linked = {
         (page.parent / link).resolve()

@@ -36,6 +36,12 @@ def test_fields_of_a_kinematic_performance(phrase: Score) -> None:
     assert set(dance.summary()) == fields("kinematic")
 
 
+def test_fields_of_a_performance_of_a_file(phrase: Score, tmp_path: Path) -> None:
+    drawn = enpointe.perform(phrase, controller="kinematic").save(tmp_path)["motion"]
+    figures = enpointe.perform_file(drawn, controller="kinematic").summary()
+    assert set(figures) == fields("kinematic") | fields("file")
+
+
 def test_fields_of_a_check(phrase: Score) -> None:
     assert set(enpointe.check(phrase).summary()) == fields("check")
 

@@ -65,7 +65,8 @@ def fallen(physical: Performance) -> Performance:
         fell_at=float(cut.time[-6]),
         **{name: getattr(measures, name)[:kept] for name in figures} | {"margin": margin},
     )
-    return dataclasses.replace(physical, recording=cut, measures=less)
+    physics = dataclasses.replace(physical.physics, recording=cut, measures=less)
+    return dataclasses.replace(physical, physics=physics)
 
 
 @pytest.fixture(scope="session")
