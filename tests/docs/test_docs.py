@@ -120,6 +120,8 @@ def test_every_table_stands_somewhere(tables: ModuleType) -> None:
         for match in tables.MARKED.finditer(page.read_text(encoding="utf-8"))
     }
     assert used == set(tables.TABLES)
+
+
 def test_pictures_are_small_and_used() -> None:
     linked = {
         (page.parent / link).resolve()
