@@ -48,7 +48,9 @@ def load_score(name_or_path: str | Path, vocabulary: Vocabulary | None = None) -
         return parse_score(file.read_bytes(), source)
     close = difflib.get_close_matches(source, shipped, n=3)
     hint = f"did you mean {' or '.join(close)}?" if close else f"shipped are {', '.join(shipped)}"
-    data = _read(name_or_path, MAX_JSON_BYTES, f"no such file or shipped score; {hint}")
+    of_file = Path(source).suffix and not close
+    missing = "there is no such file" if of_file else f"no such file or shipped score; {hint}"
+    data = _read(name_or_path, MAX_JSON_BYTES, missing)
     if data.removeprefix(b"\xef\xbb\xbf").lstrip(b" \t\r\n").startswith(b"{"):
         return score_from_json(data, source)
     return parse_score(data, source, vocabulary)
