@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 from enpointe.models.anatomy import SIDES
 from enpointe.models.dancer import dancer_model
 from enpointe.models.soles import sole_geoms
-from enpointe.motion.averaging import averaged_qpos
 from enpointe.motion.contact_schedule import ON_FLOOR, ContactSchedule, trace_soles
 from enpointe.motion.formats.content import Content, Payload
 from enpointe.motion.formats.registry import read
 from enpointe.motion.motion import Motion
 from enpointe.motion.retargeting.body import BALL, HEEL, NONE, TIP, Body
+from enpointe.motion.retargeting.flowing import flowing
 from enpointe.motion.retargeting.floor import levelled, steps_of
 from enpointe.motion.retargeting.joint_map import JointMap
 from enpointe.motion.retargeting.pinning import pinned
@@ -31,8 +31,6 @@ from enpointe.motion.retargeting.source import Source, source_of
 __all__ = ["Retargeted", "retarget"]
 
 Array = NDArray[np.float64]
-_KINKS = 0.032
-"""s: what is left of kinks where feet come and go is averaged away over this width."""
 
 
 @dataclass(frozen=True)
@@ -95,7 +93,7 @@ def retarget(
     source = levelled(source_of(payload, mapping))
     scale = body.leg / _leg(source)
     plan = make_plan(source, body, steps_of(source, body, scale), scale)
-    qpos = averaged_qpos(posed(plan, body, progress), _KINKS, source.rate)
+    qpos = flowing(plan, body, posed(plan, body, progress))
     qpos = pinned(plan, body, qpos)
     motion = Motion.from_qpos(body.model, source.time, qpos, name=name)
     return Retargeted(
