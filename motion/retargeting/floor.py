@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -37,8 +38,8 @@ _RESTS, _SKIMS = 0.3, 0.4
 _MARGIN = 0.01
 """m: an ankle higher than the foot is long, by more than this, has no ball of a foot on the floor
 under it."""
-_STRETCHED = 0.12
-"""m: the same where the body's weight says that a foot bears."""
+_BADLY = 0.12
+"""m: a foot that seems no higher than this bears where the body's weight says that one does."""
 _HEEL_ROLLS = 0.25
 """s: nobody stands on a heel alone for longer; whoever seems to has a badly captured foot."""
 _ROLLS = 0.06
@@ -72,6 +73,7 @@ class Steps:
         turn: (T, 3, 3), the foot's frame.
         pitch: (T,), how far it points down if it is on the floor, rad: as high as its ankle is.
         heading: (T,), where it points, rad.
+        readings: Of each kind, several of where that of the foot is, (T, 3) each, m, as captured.
     """
 
     kind: NDArray[np.int8]
@@ -79,6 +81,7 @@ class Steps:
     turn: Array
     pitch: Array
     heading: Array
+    readings: Mapping[int, tuple[Array, ...]]
 
 
 def levelled(source: Source) -> Source:
@@ -133,10 +136,13 @@ def steps_of(source: Source, body: Body, scale: float) -> dict[str, Steps]:
         for side, other in zip(SIDES, reversed(SIDES), strict=True)
     }
     aloft = ~np.logical_or(*down.values())
-    borne = aloft & ~flying(source.time, weight_centre(source.points)[:, 2], aloft)
-    lowest = np.argmin([foot.height() for foot in feet.values()], axis=0)
+    flies = flying(source.time, weight_centre(source.points)[:, 2], aloft)
+    heights = np.array([foot.height() for foot in feet.values()])
+    lowest = np.argmin(heights, axis=0)
     return {
-        side: feet[side].steps(down[side] | (borne & (lowest == i) & feet[side].may_reach()))
+        side: feet[side].steps(
+            down[side] | (aloft & ~flies & (lowest == i) & (heights[i] < _BADLY)), flies
+        )
         for i, side in enumerate(SIDES)
     }
 
@@ -185,11 +191,7 @@ class _Seen:
         lowest = np.minimum(self._over, self._toe_over)
         return np.asarray(averaged(lowest[:, None], _WINDOW, self._source.rate)[:, 0])
 
-    def may_reach(self) -> Mask:
-        """Where its ankle is not higher than a badly captured foot is long."""
-        return np.asarray(self._over < self._length - self._rise + _STRETCHED)
-
-    def steps(self, on_ball: Mask) -> Steps:
+    def steps(self, on_ball: Mask, flies: Mask) -> Steps:
         source, period = self._source, float(self._source.time[1])
         forward = self._turn[:, :, 0]
         heel = self._toe - forward * self._foot.span / self._scale
@@ -201,7 +203,7 @@ class _Seen:
         on_heel = self._rolling(on_heel, on_ball)
         pointed = ~on_ball & (self._pitch > _POINTED)
         on_tip = pointed & hysteresis(tip_over < _FLAT_ON, tip_over < _FLAT_OFF)
-        kind = np.select([on_ball, on_heel, on_tip], [BALL, HEEL, TIP], NONE)
+        kind = np.select([flies, on_ball, on_heel, on_tip], [NONE, BALL, HEEL, TIP], NONE)
         down = without_chatter((kind != NONE)[:, None], period)[:, 0]
         kind = np.where(down, np.where(kind == NONE, BALL, kind), NONE).astype(np.int8)
         pitch = np.where((kind == HEEL) | (kind == TIP), self._pitch, self._on_ball())
@@ -211,15 +213,12 @@ class _Seen:
         spins = np.abs(np.gradient(averaged(self._heading[:, None], _WINDOW, source.rate)[:, 0]))
         spins = spins * source.rate > _SPINS
         still = np.zeros(len(kind), dtype=bool)
-        for each, places in (
-            (BALL, (ball, self._toe, self._ankle)),
-            (HEEL, (heel,)),
-            (TIP, (tip,)),
-        ):
+        readings = {BALL: (ball, self._toe, self._ankle), HEEL: (heel,), TIP: (tip,)}
+        for each, places in readings.items():
             still |= _standing(places, kind == each, source, spins)
         # A tip that brushes the floor is kept out of it, and not to it.
         kind = np.where((kind == TIP) & ~still, NONE, kind).astype(np.int8)
-        return Steps(kind, still, self._turn, pitch, self._heading)
+        return Steps(kind, still, self._turn, pitch, self._heading, readings)
 
     def _rolling(self, on_heel: Mask, on_ball: Mask) -> Mask:
         """Heels that strike before the ball does, or leave after it, and are soon over."""

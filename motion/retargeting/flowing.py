@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
 from scipy.linalg import solveh_banded
 
+from enpointe.motion.retargeting.aloft import thrown
 from enpointe.motion.retargeting.body import Body
 from enpointe.motion.retargeting.pinning import Pins, pins_of
 from enpointe.motion.retargeting.plan import Plan
@@ -45,7 +46,9 @@ _CAUTION = (0.1, 1e-3, 1e3)
 """Cost of going anywhere in a step, 1/rad^2: at first, least and most."""
 _NEAR = 0.1
 """s: samples nearer than this to one whose cost rose go on with more caution."""
-_STEPS, _DONE = 15, 1e-3
+_FALLING = 40.0
+"""Cost of a centre of mass that is off its parabola, 1/m."""
+_STEPS, _STEPS_FLYING, _DONE = 12, 5, 2e-3
 """Steps at most, and what share of the cost the last saves."""
 _LONGEST = 0.25
 """No joint goes farther in one step, rad, nor the root, m."""
@@ -67,25 +70,11 @@ def flowing(
         progress: Called with (done, all) now and then.
     """
     whole = _Whole(plan, body)
-    reach = max(round(_NEAR / float(plan.time[1])), 1)
-    caution = np.full(len(qpos), _CAUTION[0])
-    here = whole.about(qpos)
-    for count in range(_STEPS):
-        if progress is not None:
-            progress(count, _STEPS)
-        step = _shortened(whole.step(here, caution), reach)
-        there = whole.about(whole.moved(here.qpos, step))
-        worse = _nearby(there.cost, reach) > _nearby(here.cost, reach)
-        caution = np.clip(np.where(worse, 10.0, 0.2) * caution, *_CAUTION[1:])
-        if worse.any():
-            # Back where it went wrong, and smoothly from there to where it went well.
-            share = 1.0 - uniform_filter1d(maximum_filter1d(worse * 1.0, 4 * reach + 1), 2 * reach)
-            there = whole.about(whole.moved(here.qpos, share[:, None] * step), there, share < 1.0)
-        gained = float(here.cost.sum() - there.cost.sum())
-        here = there
-        if abs(gained) < _DONE * float(here.cost.sum()):
-            break
-    return here.qpos
+    found = whole.least(qpos, _STEPS, progress)
+    if plan.aloft.any():
+        whole.fly(found)
+        found = whole.least(found, _STEPS_FLYING, progress)
+    return found
 
 
 def _nearby(cost: Array, reach: int) -> Array:
@@ -129,6 +118,7 @@ class _Whole:
     def __init__(self, plan: Plan, body: Body) -> None:
         self._asking, self._model = Asking(plan, body), body.model
         self._pins = pins_of(plan, body)
+        self._weight, self._thrown = mink.ComTask(_FALLING), dict[int, Array]()
         self._period = float(plan.time[1])
         model = body.model
         joints = model.dof_jntid[6:]
@@ -141,6 +131,40 @@ class _Whole:
         self._fastest = np.full(model.nv, _FASTEST * self._period)
         self._fastest[:6] = np.inf
         self._hurry = (np.full(model.nv, _HURRY) / self._period) ** 2
+
+    def fly(self, qpos: Array) -> None:
+        """Ask that the weight of configurations (T, nq) fall as it should from here on."""
+        plan, data = self._asking.plan, mujoco.MjData(self._model)
+        com = np.empty((len(qpos), 3))
+        for i in np.flatnonzero(plan.aloft):
+            data.qpos[:] = qpos[i]
+            mujoco.mj_kinematics(self._model, data)
+            mujoco.mj_comPos(self._model, data)
+            com[i] = data.subtree_com[0]
+        self._thrown = thrown(plan.time, com, plan.aloft, plan.scale)
+
+    def least(self, qpos: Array, steps: int, progress: Callable[[int, int], None] | None) -> Array:
+        """The configurations (T, nq) that cost least, sought from a guess."""
+        reach = max(round(_NEAR / self._period), 1)
+        caution = np.full(len(qpos), _CAUTION[0])
+        here = self.about(qpos)
+        for count in range(steps):
+            if progress is not None:
+                progress(count, steps)
+            step = _shortened(self.step(here, caution), reach)
+            there = self.about(self.moved(here.qpos, step))
+            worse = _nearby(there.cost, reach) > _nearby(here.cost, reach)
+            caution = np.clip(np.where(worse, 10.0, 0.2) * caution, *_CAUTION[1:])
+            if worse.any():
+                # Back where it went wrong, and smoothly from there to where it went well.
+                share = 1.0 - _nearby(maximum_filter1d(worse * 1.0, 4 * reach + 1), reach)
+                back = self.moved(here.qpos, share[:, None] * step)
+                there = self.about(back, there, share < 1.0)
+            gained = float(here.cost.sum() - there.cost.sum())
+            here = there
+            if abs(gained) < _DONE * float(here.cost.sum()):
+                break
+        return here.qpos
 
     def moved(self, qpos: Array, step: Array) -> Array:
         """Configurations (T, nq) after a step (T, nv)."""
@@ -197,6 +221,11 @@ class _Whole:
                 if pin.place:
                     rows.append(_HELD * pin.jacobian)
                     off.append(_HELD * pin.off)
+        if i in self._thrown:
+            self._weight.set_target(self._thrown[i])
+            jacobian, error, _ = self._weight.compute_qp_residual(configuration)
+            rows.append(jacobian)
+            off.append(-error)
         angles = configuration.q[7:]
         beyond = np.minimum(angles - self._low, 0.0) + np.maximum(angles - self._high, 0.0)
         ended = np.flatnonzero(beyond)

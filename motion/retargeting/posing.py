@@ -134,7 +134,7 @@ class Asking:
         self._directions = _Directions(body, names)
         self._wanted = np.stack([plan.directions[name] for name in names], axis=1)
         self._limbs = np.array([not name.endswith("_hand") for name in names])
-        self._plan, self._rest = plan, body.rest
+        self.plan, self._rest = plan, body.rest
         self.frames: dict[str, Array] = {}
         self._turned: dict[str, mink.FrameTask] = {}
         self._across: dict[str, Array] = {}
@@ -177,7 +177,7 @@ class Asking:
     def upright(self, i: int) -> Array:
         """The pose at rest, with the pelvis as sample `i` has it."""
         pose = self._rest.copy()
-        pose[:3] = self._plan.pelvis[i]
+        pose[:3] = self.plan.pelvis[i]
         pose[3:7] = self.frames["pelvis"][i]
         return pose
 
@@ -198,10 +198,10 @@ class Asking:
         self._directions.target = self._wanted[i]
         self._pelvis.set_position_cost(float(self._root[i]))
         for part, task in self._turned.items():
-            place = self._plan.pelvis[i] if part == "pelvis" else np.zeros(3)
+            place = self.plan.pelvis[i] if part == "pelvis" else np.zeros(3)
             task.set_target(mink.SE3(np.concatenate([self.frames[part][i], place])))
         for side, task in self._ankles.items():
-            foot = self._plan.feet[side]
+            foot = self.plan.feet[side]
             stands = foot.kind[i] != NONE
             task.set_position_cost(_PLANTED if stands else _FREE)
             task.set_target(mink.SE3.from_translation(foot.ankle[i]))

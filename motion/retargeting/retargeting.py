@@ -26,6 +26,7 @@ from enpointe.motion.retargeting.plan import Plan, make_plan
 from enpointe.motion.retargeting.posing import posed
 from enpointe.motion.retargeting.proposing import point_names, propose_map
 from enpointe.motion.retargeting.residual import Residual, residuals
+from enpointe.motion.retargeting.skating import slides
 from enpointe.motion.retargeting.source import Source, source_of
 
 __all__ = ["Retargeted", "retarget"]
@@ -45,6 +46,8 @@ class Retargeted:
         warnings: What was doubtful and how it was taken, one line each.
         residuals: Of each segment and part, how far its direction is from the captured one.
         scale: Size of the body over that of the captured one.
+        slides: By side, (T,), how far the captured foot, in its own size, has slid since it came to
+            bear, m; see `skating`.
     """
 
     motion: Motion
@@ -54,6 +57,7 @@ class Retargeted:
     warnings: tuple[str, ...]
     residuals: Mapping[str, Residual]
     scale: float
+    slides: Mapping[str, Array]
 
 
 def retarget(
@@ -92,7 +96,8 @@ def retarget(
     body = model if isinstance(model, Body) else Body(dancer_model() if model is None else model)
     source = levelled(source_of(payload, mapping))
     scale = body.leg / _leg(source)
-    plan = make_plan(source, body, steps_of(source, body, scale), scale)
+    steps = steps_of(source, body, scale)
+    plan = make_plan(source, body, steps, scale)
     qpos = flowing(plan, body, posed(plan, body, progress))
     qpos = pinned(plan, body, qpos)
     motion = Motion.from_qpos(body.model, source.time, qpos, name=name)
@@ -104,6 +109,7 @@ def retarget(
         (*warnings, *source.warnings),
         residuals(plan, body, motion),
         scale,
+        slides(steps, source.time),
     )
 
 
