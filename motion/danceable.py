@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
 
 from enpointe.models.soles import sole_points
-from enpointe.motion.averaging import averaged, averaged_qpos
+from enpointe.motion.averaging import averaged_qpos
 from enpointe.motion.clearance import LIFTING, lifted
 from enpointe.motion.contact_schedule import ContactSchedule, contact_schedule
 from enpointe.motion.motion import Motion

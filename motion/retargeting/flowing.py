@@ -20,12 +20,12 @@ import mink
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
 from scipy.linalg import solveh_banded
+from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
 
 from enpointe.motion.retargeting.aloft import thrown
 from enpointe.motion.retargeting.body import Body
-from enpointe.motion.retargeting.pinning import Pins, pins_of
+from enpointe.motion.retargeting.pinning import pins_of
 from enpointe.motion.retargeting.plan import Plan
 from enpointe.motion.retargeting.posing import Asking
 

@@ -18,8 +18,8 @@ from enpointe.motion.formats.content import Content, Payload
 from enpointe.motion.formats.registry import read
 from enpointe.motion.motion import Motion
 from enpointe.motion.retargeting.body import BALL, HEEL, NONE, TIP, Body
-from enpointe.motion.retargeting.flowing import flowing
 from enpointe.motion.retargeting.floor import levelled, steps_of
+from enpointe.motion.retargeting.flowing import flowing
 from enpointe.motion.retargeting.joint_map import JointMap
 from enpointe.motion.retargeting.pinning import pinned
 from enpointe.motion.retargeting.plan import Plan, make_plan

@@ -29,8 +29,7 @@ def test_a_hop_is_a_flight_whole(seconds: float) -> None:
     time, height, aloft = hop(seconds)
     flies = flying(time, height, aloft)
     assert not np.any(flies & ~aloft)
-    # The averaged weight tells the ends of it to two samples or so.
-    assert np.count_nonzero(flies) >= np.count_nonzero(aloft) - 6
+    assert np.count_nonzero(flies) >= np.count_nonzero(aloft) - 2
 
 
 def test_a_turn_on_a_foot_that_was_not_seen_is_none() -> None:
@@ -46,15 +45,18 @@ def test_a_flicker_and_a_body_that_hangs_are_none() -> None:
 
 
 @pytest.mark.parametrize("scale", [0.8, 1.0, 1.25])
-def test_the_weight_is_thrown_as_it_was_captured(scale: float) -> None:
-    time, height, aloft = hop(0.4)
-    noise = 0.004 * np.sin(2 * np.pi * 15.0 * time)
+@pytest.mark.parametrize(("gravity", "fall"), [(9.81, 9.81), (8.5, 9.81), (13.5, 13.5)])
+def test_the_weight_is_thrown(scale: float, gravity: float, fall: float) -> None:
+    """Falls that a capture can't tell from free fall are free; others are as captured."""
+    time, height, aloft = hop(0.4, gravity)
+    noise = 0.002 * np.sin(2 * np.pi * 15.0 * time)
     com = np.column_stack([scale * 1.5 * time, 0.0 * time, scale * (height + noise)])
     places = thrown(time, com, aloft, scale)
-    assert set(places) == set(np.flatnonzero(aloft).tolist())
+    # A sample at an end may be off, since there the noise decides.
+    assert set(places) <= set(np.flatnonzero(aloft).tolist())
+    assert len(places) >= np.count_nonzero(aloft) - 2
     path = np.array([places[i] for i in sorted(places)])
-    fall = -np.diff(path[:, 2], n=2) * RATE**2
-    # On one parabola, and with the gravity of the capture in the times of the capture.
-    assert np.ptp(fall) < 1e-6
-    assert fall[0] == pytest.approx(9.81, rel=0.05)
+    falls = -np.diff(path[:, 2], n=2) * RATE**2
+    assert np.ptp(falls) < 1e-6
+    assert falls[0] == pytest.approx(fall, rel=0.05)
     np.testing.assert_allclose(np.diff(path[:, 0]), scale * 1.5 / RATE, atol=1e-9)
