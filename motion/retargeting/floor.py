@@ -122,8 +122,8 @@ def steps_of(source: Source, body: Body, scale: float) -> dict[str, Steps]:
     Captured feet are the worst of a capture: toe joints rise from the floor under people who stand
     on them. Ankles are good. So a foot is on the floor where its toe joint is low, or its ankle as
     low as over a flat foot; or where its ankle rests within reach of the floor and no other foot
-    carries; or where neither foot seems to be, yet the body does not fall, and it is the lower. How far its heel is up, its
-    ankle's height says.
+    carries; or where neither foot seems to be, yet the body does not fall, and it is the lower.
+    How far its heel is up, its ankle's height says.
 
     Args:
         source: Levelled.
