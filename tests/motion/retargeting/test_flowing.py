@@ -7,10 +7,9 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 
-from enpointe.motion.averaging import averaged
 from enpointe.motion.retargeting import retarget
 
-from .conftest import RATE, as_skeleton, step_sideways
+from .conftest import as_skeleton, step_sideways
 
 
 def test_a_jerked_leg_does_not_whirl(model: mujoco.MjModel) -> None:
@@ -23,17 +22,17 @@ def test_a_jerked_leg_does_not_whirl(model: mujoco.MjModel) -> None:
 
 
 def test_noise_is_not_danced(model: mujoco.MjModel) -> None:
-    """Shaking at 20 Hz, by a degree, is felt as acceleration and is no movement."""
+    """Joints that shake by 1.5 degrees at random: a third of the acceleration is left at most."""
     motion = step_sideways(model, 1.5)
     rng = np.random.default_rng(1)
     noise = np.radians(1.5) * rng.standard_normal(motion.qpos[:, 7:].shape)
     shaken = motion.qpos.copy()
     shaken[:, 7:] += noise
-    trembling = averaged(np.diff(shaken[:, 7:], n=2, axis=0) ** 2, 0.0, RATE).mean()
+    trembling = np.sqrt((np.diff(shaken[:, 7:], n=2, axis=0) ** 2).mean())
     motion.qpos[:] = shaken
     made = retarget(as_skeleton(motion), model)
-    left = (np.diff(made.motion.qpos[:, 7:], n=2, axis=0) ** 2).mean()
-    assert left < 0.05 * trembling
+    left = np.sqrt((np.diff(made.motion.qpos[:, 7:], n=2, axis=0) ** 2).mean())
+    assert left < trembling / 3.0
 
 
 def test_a_long_movement_is_the_same_through_its_windows(model: mujoco.MjModel) -> None:
