@@ -8,6 +8,8 @@ from math import degrees
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from enpointe.notation import Score, load_score
 from enpointe.performing import perform
 from enpointe.preparing import Progress, silent
@@ -19,16 +21,13 @@ if TYPE_CHECKING:
     from enpointe.motion.contact_schedule import ContactSchedule
     from enpointe.sim.motion_check import MotionCheck
 
-__all__ = ["Check", "Clock", "check"]
+__all__ = ["Check", "Clock", "Slide", "check"]
 
-HELP_MAX = 0.05
-"""Of body weight: with more invisible help than this, rms, a movement is not one that can be
-danced."""
 SLIP_MAX, PENETRATION_MAX = 0.01, 0.01
 """m: a foot that slides or sinks farther shows."""
 MEASURED = 0.15
 """s over which a captured movement is averaged before it is differentiated twice: what is slower
-than 6 Hz stays, as is usual for human movement (Winter 2009, section 3.5.2)."""
+than 6 Hz stays, as is usual for human movement (Winter 2009)."""
 FASTEST = 5
 """Joints whose speed is told."""
 BEYOND_MAX = 0.5
@@ -52,6 +51,21 @@ class Clock:
         return self.first + round(time * self.rate)
 
 
+@dataclass(frozen=True, slots=True)
+class Slide:
+    """How far a foot of a file slides at most while it bears.
+
+    Attributes:
+        foot: "left" or "right".
+        time: s, when it is farthest from where it came to stand.
+        far: By how much, m, in the file's own size.
+    """
+
+    foot: str
+    time: float
+    far: float
+
+
 @dataclass(frozen=True)
 class Check:
     """A movement, and what is to be said of it.
@@ -62,6 +76,7 @@ class Check:
         clock: How the file counts its frames; the samples of the movement, from 0, without a file.
         warnings: What was doubtful in the file and how it was taken, one line each.
         contacts: Which soles stand and when, where the capture says it.
+        slides: Of a file's own feet, how far each slides while it bears; none without a file.
     """
 
     name: str
@@ -69,18 +84,22 @@ class Check:
     clock: Clock
     warnings: tuple[str, ...] = ()
     contacts: ContactSchedule | None = None
+    slides: tuple[Slide, ...] = ()
+
+    @property
+    def slip_max(self) -> float:
+        """Farthest that a foot slides while it bears, m: the file's own where there is a file."""
+        return max((s.far for s in self.slides), default=self.found.slip_max)
 
     @property
     def faults(self) -> tuple[str, ...]:
         """What makes the answer no, in words; empty if a body could do this."""
         found, faults = self.found, []
-        model = found.motion.model
-        weight = float(model.body_mass.sum() * -model.opt.gravity[2])
-        if found.root_wrench_rms > HELP_MAX * weight:
-            share = 100 * found.root_wrench_rms / weight
+        if found.needs_help:
+            share = 100 * found.root_wrench_rms / found.weight
             faults.append(f"needs invisible help of {share:.0f} % of body weight, rms")
-        if found.slip_max > SLIP_MAX:
-            faults.append(f"a standing foot slides {1000 * found.slip_max:.0f} mm")
+        if self.slip_max > SLIP_MAX:
+            faults.append(f"a standing foot slides {1000 * self.slip_max:.0f} mm")
         if found.penetration_max > PENETRATION_MAX:
             faults.append(f"sinks {1000 * found.penetration_max:.0f} mm into the floor")
         worst = [b for b in found.breaches if b.beyond_deg > BEYOND_MAX]
@@ -105,7 +124,11 @@ class Check:
                 side: [{"start": c.start, "end": c.end, "on": str(c.on)} for c in contacts]
                 for side, contacts in found.contacts.items()
             },
-            "slip_max": found.slip_max,
+            "slip_max": self.slip_max,
+            "slides": [
+                {"foot": s.foot, "time": s.time, "frame": self.clock.frame(s.time), "far": s.far}
+                for s in self.slides
+            ],
             "penetration_max": found.penetration_max,
             "overlap_max": found.overlap_max,
             "flights": [
@@ -118,8 +141,10 @@ class Check:
                     "end": b.end,
                     "rise": b.rise,
                     "rise_free": b.rise_free,
+                    "rise_ratio": b.rise_ratio,
                     "fall": b.fall,
                     "off_path": b.off_path,
+                    "momentum": b.momentum.tolist(),
                     "momentum_change": b.momentum_change,
                 }
                 for b in found.ballistics
@@ -183,7 +208,12 @@ class Check:
             for side, contacts in found.contacts.items()
         ]
         rows += [
-            ("slip, most", _mm(found.slip_max)),
+            ("slip, most", _mm(self.slip_max)),
+            *(
+                (f"{s.foot} foot slides", f"{_mm(s.far)} by frame {self.clock.frame(s.time)}")
+                for s in self.slides
+                if s.far > SLIP_MAX
+            ),
             ("into the floor, most", _mm(found.penetration_max)),
             ("limbs in one another, most", _mm(found.overlap_max)),
         ]
@@ -260,13 +290,10 @@ def check(
         >>> enpointe.check("first-port-de-bras").faults
         ()
     """
-    clock: Clock | None = None
-    warnings: tuple[str, ...] = ()
-    contacts: ContactSchedule | None = None
+    if isinstance(source, str | Path) and _is_capture(Path(source)):
+        return _checked_capture(Path(source), dancer, mapping, progress)
     if isinstance(source, str | Path) and is_stored(Path(source)):
         motion = load_stored(Path(source), dancer)
-    elif isinstance(source, str | Path) and _is_capture(Path(source)):
-        motion, clock, warnings, contacts = _captured(Path(source), dancer, mapping, progress)
     elif isinstance(source, str | Path | Score):
         motion = perform(
             source if isinstance(source, Score) else load_score(source),
@@ -282,29 +309,39 @@ def check(
     from enpointe.sim.motion_check import check_motion
 
     progress("looking", 0, 1)
-    found = check_motion(motion, contacts, averaged_over=0.0 if clock is None else MEASURED)
+    found = check_motion(motion)
     progress("looking", 1, 1)
-    clock = clock or Clock((len(motion.time) - 1) / motion.duration)
-    return Check(motion.name, found, clock, warnings, contacts)
+    return Check(motion.name, found, Clock((len(motion.time) - 1) / motion.duration))
 
 
 def _is_capture(path: Path) -> bool:
-    return path.is_file() and path.suffix != ".bmn"
+    return path.is_file() and path.suffix != ".bmn" and not is_stored(path)
 
 
-def _captured(
+def _checked_capture(
     path: Path, dancer: Anthropometry | None, mapping: str | Path | None, progress: Progress
-) -> tuple[Motion, Clock, tuple[str, ...], ContactSchedule]:
+) -> Check:
     from enpointe.models.dancer import dancer_model
-    from enpointe.motion.formats import read
+    from enpointe.motion.formats import MarkerMotion, SkeletonMotion, read
     from enpointe.motion.retargeting import retarget
+    from enpointe.sim.motion_check import check_motion
 
     content = read(path)
-    done = retarget(
+    made = retarget(
         content,
         dancer_model(dancer, flesh=False),
         mapping=mapping,
         progress=lambda done, total: progress("putting it on the dancer", done, total),
     )
-    clock = Clock(getattr(content.motion, "rate", 0.0), int(getattr(content.motion, "start", 0)))
-    return replace(done.motion, name=path.stem), clock, done.warnings, done.contacts
+    captured = content.motion
+    first = captured.start if isinstance(captured, SkeletonMotion | MarkerMotion) else 0
+    motion = replace(made.motion, name=path.stem)
+    clock = Clock((len(motion.time) - 1) / motion.duration, first)
+    progress("looking", 0, 1)
+    found = check_motion(motion, made.contacts, averaged_over=MEASURED)
+    progress("looking", 1, 1)
+    slides = tuple(
+        Slide(side, float(motion.time[int(np.argmax(far))]), float(far.max()))
+        for side, far in made.slides.items()
+    )
+    return Check(path.stem, found, clock, made.warnings, made.contacts, slides)

@@ -20,10 +20,11 @@ import mink
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import distance_transform_edt, maximum_filter1d
+from scipy.ndimage import distance_transform_edt
 
 from enpointe.models.soles import sole_points
-from enpointe.motion.averaging import averaged, averaged_qpos
+from enpointe.motion.averaging import averaged_qpos
+from enpointe.motion.clearance import LIFTING, lifted
 from enpointe.motion.contact_schedule import ContactSchedule, contact_schedule
 from enpointe.motion.motion import Motion
 from enpointe.motion.weight_plan import WeightPlan, plan_weight
@@ -48,9 +49,9 @@ _POSTURE, _BEARING_LEG, _ARMS = 0.3, 0.05, 1.0
 """Costs of joint angles (1/rad): of what moves freely, of a leg that stands, whose hip and ankle
 must give way for the weight to move, and of arms, which are seen and are not there to be thrown up
 where the weight should be higher."""
-_BRUSH, _LIFTING = 0.006, 0.1
-"""m and s: a foot that slides without weight is carried so high over the floor, and takes so long
-to get there; a sole that drags is pushed off its way by friction that nobody planned."""
+_BRUSH = 0.006
+"""m: a foot that slides without weight is carried so high over the floor; a sole that drags is
+pushed off its way by friction that nobody planned."""
 _MUSCLE = 0.24
 """s: the corners at key poses are rounded over this window, wider than the movement's own since
 legs throw more weight about than arms do; the feet that it moves are put back."""
@@ -216,23 +217,21 @@ class _Poser:
 def _lift(heights: Array, freedom: Array, feet: list[NDArray[np.int64]], time: Array) -> Array:
     """What each sole is lifted by, (T, S), m: smooth, a whole foot alike, none that bears."""
     rate = 1.0 / float(np.median(np.diff(time)))
-    width = 2 * int(0.5 * _LIFTING * rate) + 1
     lift = np.zeros_like(heights)
     for soles in feet:
         short = np.maximum(_BRUSH * freedom[:, soles] - heights[:, soles], 0.0).max(axis=1)
-        smooth = averaged(maximum_filter1d(short, width)[:, None], 2 * _LIFTING, rate)
-        lift[:, soles] = smooth * freedom[:, soles]
+        lift[:, soles] = lifted(short, rate)[:, None] * freedom[:, soles]
     return lift
 
 
 def _freedom(contacts: ContactSchedule) -> Array:
-    """How free of the floor each sole is, (T, S): 0 while it bears, 1 from `_LIFTING` away."""
+    """How free of the floor each sole is, (T, S): 0 while it bears, 1 from `LIFTING` away."""
     rate = 1.0 / float(np.median(np.diff(contacts.time)))
     away = [
         distance_transform_edt(~bears) if bears.any() else np.full(len(bears), np.inf)
         for bears in contacts.bears.T
     ]
-    share = np.clip(np.stack(away, axis=1) / (rate * _LIFTING), 0.0, 1.0)
+    share = np.clip(np.stack(away, axis=1) / (rate * LIFTING), 0.0, 1.0)
     return np.asarray(share**2 * (3.0 - 2.0 * share))
 
 

@@ -41,7 +41,8 @@ SHORTEST_TURN = 0.125
 BEYOND = np.radians(0.1)
 """A joint this far beyond its range, rad, is there by more than rounding."""
 HELP_MAX = 0.05
-"""Of body weight: what is missing below this is the noise of what was measured or drawn."""
+"""Of body weight: what is missing below this is the noise of what was measured or drawn; with more,
+rms, a movement is not one that can be danced."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,6 +125,7 @@ class MotionCheck:
         turns: In order.
         breaches: The joints beyond their ranges, worst first.
         speeds: Every joint at its fastest, fastest first.
+        root_wrench_time: (N,), s.
         root_wrench: (N,), what of the force and moment on the root the floor could not give, N
             (moments over 1 m), 50 times a second.
         help: When that is more than a twentieth of body weight, and why.
@@ -142,8 +144,15 @@ class MotionCheck:
     turns: tuple[Turn, ...]
     breaches: tuple[LimitBreach, ...]
     speeds: tuple[JointSpeed, ...]
+    root_wrench_time: Array
     root_wrench: Array
     help: tuple[Help, ...]
+
+    @property
+    def weight(self) -> float:
+        """Body weight, N."""
+        model = self.motion.model
+        return float(model.body_mass.sum() * -model.opt.gravity[2])
 
     @property
     def support_margin_min(self) -> float | None:
@@ -165,6 +174,11 @@ class MotionCheck:
         """The invisible hand that the movement needs, N (moments over 1 m)."""
         return float(np.sqrt(np.mean(self.root_wrench**2)))
 
+    @property
+    def needs_help(self) -> bool:
+        """Whether that is more than `HELP_MAX`: then the movement can't be danced."""
+        return self.root_wrench_rms > HELP_MAX * self.weight
+
 
 def check_motion(
     motion: Motion, contacts: ContactSchedule | None = None, *, averaged_over: float = 0.0
@@ -175,7 +189,7 @@ def check_motion(
         motion: Evenly sampled.
         contacts: What stands and when, where somebody knows; read from the movement otherwise.
         averaged_over: s; forces and momentum are those of the movement averaged over this window,
-            since two differences of what was measured are mostly noise (Winter 2009, section 3.5).
+            since two differences of what was measured are mostly noise (Winter 2009).
     """
     contacts = contact_schedule(motion) if contacts is None else contacts
     steady = _averaged(motion, averaged_over) if averaged_over > 0.0 else motion
@@ -205,6 +219,7 @@ def check_motion(
         turns=_turns(motion),
         breaches=_breaches(motion),
         speeds=_speeds(motion),
+        root_wrench_time=wanted.time,
         root_wrench=wanted.shortfall,
         help=spans_of_help(
             wanted.time, wanted.shortfall, HELP_MAX * body.weight, motion.time, aloft, zmp

@@ -90,10 +90,9 @@ def _draw_margin(axes: Axes, check: Check) -> None:
 
 def _draw_help(axes: Axes, check: Check) -> None:
     found = check.found
-    model = found.motion.model
-    weight = float(model.body_mass.sum() * -model.opt.gravity[2])
-    time = np.linspace(0.0, found.motion.duration, len(found.root_wrench))
-    share = 100.0 * found.root_wrench / weight
-    axes.fill_between(_frames(check, time), share, color=COM, alpha=0.5, linewidth=0.0)
+    share = 100.0 * found.root_wrench / found.weight
+    axes.fill_between(
+        _frames(check, found.root_wrench_time), share, color=COM, alpha=0.5, linewidth=0.0
+    )
     axes.set_ylim(0.0, max(10.0, min(200.0, 1.1 * float(share.max(initial=0.0)))))
     axes.set_ylabel("help, % of\nbody weight")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,6 +12,7 @@ from scipy.spatial.transform import Rotation
 from enpointe.models.anatomy import SIDES
 from enpointe.motion.averaging import averaged
 from enpointe.motion.contact_schedule import without_chatter
+from enpointe.motion.retargeting.aloft import flying, weight_centre
 from enpointe.motion.retargeting.body import BALL, HEEL, NONE, TIP, Body, Foot
 from enpointe.motion.retargeting.heading import headings
 from enpointe.motion.retargeting.holding import hysteresis, runs
@@ -36,6 +38,8 @@ _RESTS, _SKIMS = 0.3, 0.4
 _MARGIN = 0.01
 """m: an ankle higher than the foot is long, by more than this, has no ball of a foot on the floor
 under it."""
+_BADLY = 0.12
+"""m: a foot that seems no higher than this bears where the body's weight says that one does."""
 _HEEL_ROLLS = 0.25
 """s: nobody stands on a heel alone for longer; whoever seems to has a badly captured foot."""
 _ROLLS = 0.06
@@ -44,6 +48,8 @@ _STILL, _MOVING = 0.12, 0.30
 """m/s: slower than the first a foot stands, until it is faster than the second."""
 _WANDER = 0.025
 """m: a foot that is farther than this from where it stood has slid there, however slowly."""
+_SPINS, _PIVOT = 2.0, 3.0
+"""rad/s, and how much more of the last three a foot that turns faster than that may have."""
 _WINDOW = 0.15
 """Speeds are averaged over this, s."""
 _POINTED, _HEELED = np.radians(35.0), np.radians(8.0)
@@ -67,6 +73,7 @@ class Steps:
         turn: (T, 3, 3), the foot's frame.
         pitch: (T,), how far it points down if it is on the floor, rad: as high as its ankle is.
         heading: (T,), where it points, rad.
+        readings: Of each kind, several of where that of the foot is, (T, 3) each, m, as captured.
     """
 
     kind: NDArray[np.int8]
@@ -74,6 +81,7 @@ class Steps:
     turn: Array
     pitch: Array
     heading: Array
+    readings: Mapping[int, tuple[Array, ...]]
 
 
 def levelled(source: Source) -> Source:
@@ -114,7 +122,8 @@ def steps_of(source: Source, body: Body, scale: float) -> dict[str, Steps]:
     Captured feet are the worst of a capture: toe joints rise from the floor under people who stand
     on them. Ankles are good. So a foot is on the floor where its toe joint is low, or its ankle as
     low as over a flat foot; or where its ankle rests within reach of the floor and no other foot
-    carries. How far its heel is up, its ankle's height says.
+    carries; or where neither foot seems to be, yet the body does not fall, and it is the lower.
+    How far its heel is up, its ankle's height says.
 
     Args:
         source: Levelled.
@@ -123,9 +132,19 @@ def steps_of(source: Source, body: Body, scale: float) -> dict[str, Steps]:
     """
     feet = {side: _Seen(source, body.feet[side], side, scale) for side in SIDES}
     sure = {side: foot.on_floor() for side, foot in feet.items()}
+    down = {
+        side: sure[side] | (feet[side].rests() & ~sure[other])
+        for side, other in zip(SIDES, reversed(SIDES), strict=True)
+    }
+    aloft = ~np.logical_or(*down.values())
+    flies = flying(source.time, weight_centre(source.points)[:, 2], aloft)
+    heights = np.array([foot.height() for foot in feet.values()])
+    lowest = np.argmin(heights, axis=0)
     return {
-        side: foot.steps(sure[side] | (foot.rests() & ~sure[other]))
-        for (side, foot), other in zip(feet.items(), reversed(SIDES), strict=True)
+        side: feet[side].steps(
+            down[side] | (aloft & ~flies & (lowest == i) & (heights[i] < _BADLY)), flies
+        )
+        for i, side in enumerate(SIDES)
     }
 
 
@@ -168,7 +187,12 @@ class _Seen:
         near = self._reached
         return hysteresis(near & (speed < _STILL), near & (speed < _MOVING))
 
-    def steps(self, on_ball: Mask) -> Steps:
+    def height(self) -> Array:
+        """How high over the floor it seems to be, (T,), m."""
+        lowest = np.minimum(self._over, self._toe_over)
+        return np.asarray(averaged(lowest[:, None], _WINDOW, self._source.rate)[:, 0])
+
+    def steps(self, on_ball: Mask, flies: Mask) -> Steps:
         source, period = self._source, float(self._source.time[1])
         forward = self._turn[:, :, 0]
         heel = self._toe - forward * self._foot.span / self._scale
@@ -180,23 +204,22 @@ class _Seen:
         on_heel = self._rolling(on_heel, on_ball)
         pointed = ~on_ball & (self._pitch > _POINTED)
         on_tip = pointed & hysteresis(tip_over < _FLAT_ON, tip_over < _FLAT_OFF)
-        kind = np.select([on_ball, on_heel, on_tip], [BALL, HEEL, TIP], NONE)
+        kind = np.select([flies, on_ball, on_heel, on_tip], [NONE, BALL, HEEL, TIP], NONE)
         down = without_chatter((kind != NONE)[:, None], period)[:, 0]
         kind = np.where(down, np.where(kind == NONE, BALL, kind), NONE).astype(np.int8)
         pitch = np.where((kind == HEEL) | (kind == TIP), self._pitch, self._on_ball())
         pitch = averaged(pitch[:, None], _ROLLS, source.rate)[:, 0]
         lain = Rotation.from_euler("ZY", np.stack([self._heading, pitch], axis=1))
         ball = self._ankle + lain.apply(self._foot.ball / self._scale)
+        spins = np.abs(np.gradient(averaged(self._heading[:, None], _WINDOW, source.rate)[:, 0]))
+        spins = spins * source.rate > _SPINS
         still = np.zeros(len(kind), dtype=bool)
-        for each, places in (
-            (BALL, (ball, self._toe, self._ankle)),
-            (HEEL, (heel,)),
-            (TIP, (tip,)),
-        ):
-            still |= _standing(places, kind == each, source)
+        readings = {BALL: (ball, self._toe, self._ankle), HEEL: (heel,), TIP: (tip,)}
+        for each, places in readings.items():
+            still |= _standing(places, kind == each, source, spins)
         # A tip that brushes the floor is kept out of it, and not to it.
         kind = np.where((kind == TIP) & ~still, NONE, kind).astype(np.int8)
-        return Steps(kind, still, self._turn, pitch, self._heading)
+        return Steps(kind, still, self._turn, pitch, self._heading, readings)
 
     def _rolling(self, on_heel: Mask, on_ball: Mask) -> Mask:
         """Heels that strike before the ball does, or leave after it, and are soon over."""
@@ -224,16 +247,22 @@ def _pitch(turn: Array) -> Array:
     return np.asarray(-np.arcsin(np.clip(turn[:, 2, 0], -1.0, 1.0)))
 
 
-def _standing(places: tuple[Array, ...], mine: Mask, source: Source) -> Mask:
-    """Where one of several readings of a point on the floor neither moves nor wanders."""
+def _standing(places: tuple[Array, ...], mine: Mask, source: Source, spins: Mask) -> Mask:
+    """Where one of several readings of a point on the floor neither moves nor wanders.
+
+    A foot that spins may seem to do both, since nobody captures the very point that it spins on.
+    """
     standing = np.zeros(len(mine), dtype=bool)
+    slow, moving, wander = (
+        np.where(spins, _PIVOT * bound, bound) for bound in (_STILL, _MOVING, _WANDER)
+    )
     for place in places:
         smooth = averaged(place[:, :2], _WINDOW, source.rate)
         speed = np.linalg.norm(np.gradient(smooth, source.time, axis=0), axis=1)
-        still = hysteresis(mine & (speed < _STILL), mine & (speed < _MOVING))
+        still = hysteresis(mine & (speed < slow), mine & (speed < moving))
         for run in runs(still):
             away = np.linalg.norm(smooth[run] - np.median(smooth[run], axis=0), axis=1)
-            still[run] &= away < _WANDER
+            still[run] &= away < wander[run]
         standing |= still
     return np.asarray(without_chatter(standing[:, None], float(source.time[1]))[:, 0] & mine)
 

@@ -15,11 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from enpointe.models.anatomy import SIDES
-from enpointe.motion.averaging import averaged
 from enpointe.motion.retargeting.body import BALL, HEEL, NONE, TIP, Body
 from enpointe.motion.retargeting.plan import FootPlan, Plan
 
-__all__ = ["pinned"]
+__all__ = ["Pins", "pinned", "pins_of"]
 
 Array = NDArray[np.float64]
 _ROOT = 10.0
@@ -29,8 +28,6 @@ _CLOSE = 1e-4
 _FAR = 1e-3
 """A foot that can't be brought nearer than this, m and rad, is let lie as it will."""
 _STEPS = 8
-_EASED = (0.15, 0.08)
-"""s: widths over which corrections are averaged, one round after the other."""
 _DAMPING = 1e-6
 _LONGEST = 0.1
 """No step moves a joint, or the root, farther than this, rad and m."""
@@ -49,22 +46,21 @@ def pinned(plan: Plan, body: Body, qpos: Array) -> Array:
     Returns:
         (T, nq).
     """
+    data = mujoco.MjData(body.model)
+    return _corrected(body, data, qpos, pins_of(plan, body))
+
+
+def pins_of(plan: Plan, body: Body) -> dict[str, Pins]:
+    """What holds each foot."""
     kinds = {side: plan.feet[side].kind for side in SIDES}
-    feet = {
+    return {
         # Nobody stands on a toe that touches the floor beside a standing foot.
-        side: _Pins(body, side, plan.feet[side], (kinds[side] == TIP) & (kinds[other] != NONE))
+        side: Pins(body, side, plan.feet[side], (kinds[side] == TIP) & (kinds[other] != NONE))
         for side, other in zip(SIDES, reversed(SIDES), strict=True)
     }
-    data = mujoco.MjData(body.model)
-    rate = 1.0 / float(plan.time[1])
-    soft = qpos.copy()
-    for width in _EASED:
-        # What a pin moves is shared out over its neighbours: feet come and go without jerks.
-        soft += averaged(_corrected(body, data, soft, feet) - soft, width, rate)
-    return _corrected(body, data, soft, feet)
 
 
-def _corrected(body: Body, data: mujoco.MjData, qpos: Array, feet: dict[str, _Pins]) -> Array:
+def _corrected(body: Body, data: mujoco.MjData, qpos: Array, feet: dict[str, Pins]) -> Array:
     placed = qpos.copy()
     for i, row in enumerate(placed):
         _correct(body, data, row, feet, i)
@@ -79,7 +75,22 @@ class _Point:
     place: Array
 
 
-class _Pins:
+@dataclass(frozen=True)
+class Pin:
+    """How far a foot is from where it should be, in one respect.
+
+    Attributes:
+        off: (n,), m, or the sine of an angle.
+        jacobian: (n, nv).
+        place: Whether it is a place, or a height; a heading otherwise.
+    """
+
+    off: Array
+    jacobian: Array
+    place: bool = True
+
+
+class Pins:
     """What holds one foot."""
 
     def __init__(self, body: Body, side: str, plan: FootPlan, loose: NDArray[np.bool_]) -> None:
@@ -109,10 +120,8 @@ class _Pins:
         self._forward = data.xmat[ends[0]].reshape(3, 3).T @ [1.0, 0.0, 0.0]
         self._foot = ends[0]
 
-    def misplaced(
-        self, data: mujoco.MjData, i: int, *, whole: bool = True
-    ) -> tuple[list[Array], list[Array]]:
-        """How far a foot is from its place and its Jacobian, in pieces.
+    def misplaced(self, data: mujoco.MjData, i: int, *, whole: bool = True) -> list[Pin]:
+        """How far a foot is from its place.
 
         Args:
             data: Its kinematics.
@@ -120,24 +129,23 @@ class _Pins:
             whole: Whether it must also lie as it should, not only touch where it should.
         """
         model, plan = self._model, self._plan
-        rows: list[Array] = []
-        jacobians: list[Array] = []
+        found: list[Pin] = []
         kind = int(self._kind[i])
         down: list[int] = []
         if kind != NONE:
             heel = kind == HEEL and not plan.flat[i]
-            point = self._points[HEEL if heel else TIP if kind == TIP else BALL]
-            found, jacobian = self._point(data, point)
-            rows.append(found - plan.place[i])
-            jacobians.append(jacobian)
+            place, jacobian = self._point(
+                data, self._points[HEEL if heel else TIP if kind == TIP else BALL]
+            )
+            # A foot that slides is told its height alone; where to, its ankle is.
+            held = slice(0, 3) if plan.still[i] else slice(2, 3)
+            found.append(Pin((place - plan.place[i])[held], jacobian[held]))
             if whole and plan.flat[i]:
                 down = [*self._of[HEEL], *self._of[BALL], *self._of[TIP]]
             elif whole and kind == BALL:
                 down = [*self._of[BALL], *self._of[TIP]]
             if whole and kind != TIP:
-                off, jacobian = self._heading(data, plan.turn[i])
-                rows.append(off)
-                jacobians.append(jacobian)
+                found.append(Pin(*self._heading(data, plan.turn[i]), place=False))
         for geom in self._soles:
             depth = data.geom_xpos[geom, 2] - model.geom_size[geom, 0]
             if geom in down or depth < -_CLOSE:
@@ -145,9 +153,8 @@ class _Pins:
                 mujoco.mj_jac(
                     model, data, moved, None, data.geom_xpos[geom], int(model.geom_bodyid[geom])
                 )
-                rows.append(np.array([depth]))
-                jacobians.append(moved[2:])
-        return rows, jacobians
+                found.append(Pin(np.array([depth]), moved[2:]))
+        return found
 
     def _point(self, data: mujoco.MjData, point: _Point) -> tuple[Array, Array]:
         turn = data.xmat[point.body].reshape(3, 3)
@@ -178,7 +185,7 @@ def _local(data: mujoco.MjData, body: int, place: Array) -> _Point:
     return _Point(body, data.xmat[body].reshape(3, 3).T @ (place - data.xpos[body]))
 
 
-def _correct(body: Body, data: mujoco.MjData, qpos: Array, feet: dict[str, _Pins], i: int) -> None:
+def _correct(body: Body, data: mujoco.MjData, qpos: Array, feet: dict[str, Pins], i: int) -> None:
     """Correct one configuration (nq,) in place: feet that can't lie as they should still touch."""
     asked = qpos.copy()
     if _approach(body, data, qpos, feet, i, whole=True) > _FAR:
@@ -187,7 +194,7 @@ def _correct(body: Body, data: mujoco.MjData, qpos: Array, feet: dict[str, _Pins
 
 
 def _approach(
-    body: Body, data: mujoco.MjData, qpos: Array, feet: dict[str, _Pins], i: int, *, whole: bool
+    body: Body, data: mujoco.MjData, qpos: Array, feet: dict[str, Pins], i: int, *, whole: bool
 ) -> float:
     """A few steps, in place, and how far off what is left is."""
     model = body.model
@@ -203,12 +210,12 @@ def _approach(
         data.qpos[:] = qpos
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
-        found = [foot.misplaced(data, i, whole=whole) for foot in feet.values()]
-        off = np.concatenate([np.empty(0), *(row for rows, _ in found for row in rows)])
+        found = [pin for foot in feet.values() for pin in foot.misplaced(data, i, whole=whole)]
+        off = np.concatenate([np.empty(0), *(pin.off for pin in found)])
         left = float(np.abs(off).max(initial=0.0))
         if left < _CLOSE or step == _STEPS:
             break
-        jacobian = np.vstack([moved for _, pieces in found for moved in pieces])[:, free]
+        jacobian = np.vstack([pin.jacobian for pin in found])[:, free]
         moved = _least(jacobian, off, cost, _room(qpos[addresses], low, high))
         qpos[:3] += moved[:3]
         qpos[addresses] = np.clip(qpos[addresses] + moved[3:], low, high)

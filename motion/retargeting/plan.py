@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter1d
 from scipy.spatial.transform import Rotation
 
 from enpointe.models.anatomy import SIDES
 from enpointe.motion.averaging import averaged
+from enpointe.motion.clearance import LIFTING, lifted
 from enpointe.motion.retargeting.body import BALL, HEEL, NONE, TIP, Body, Foot
 from enpointe.motion.retargeting.floor import Steps
 from enpointe.motion.retargeting.holding import hysteresis, ramped, runs, shifted
@@ -35,8 +35,8 @@ _CHANGE = 0.06
 """s: how long a foot takes to shift from heel to ball, or ball to tip, before it is held again."""
 _FOLLOW = 0.25
 """s: the root follows what its feet are shifted by over this window."""
-_BRUSH, _LIFTING = 0.004, 0.1
-"""m and s: a foot in the air is carried so high over the floor, and takes so long to get there."""
+_BRUSH = 0.004
+"""m: a foot in the air is carried so high over the floor."""
 
 
 @dataclass(frozen=True)
@@ -81,6 +81,11 @@ class Plan:
     directions: Mapping[str, Array]
     feet: Mapping[str, FootPlan]
     scale: float
+
+    @property
+    def aloft(self) -> Mask:
+        """(T,), when no foot is on the floor."""
+        return np.asarray(np.all([foot.kind == NONE for foot in self.feet.values()], axis=0))
 
 
 def make_plan(source: Source, body: Body, steps: Mapping[str, Steps], scale: float) -> Plan:
@@ -193,10 +198,8 @@ def _changing(kind: NDArray[np.int8], rate: float) -> Mask:
 
 def _lift(height: Array, kind: NDArray[np.int8], rate: float) -> Array:
     """How much higher a foot is carried, (T, 3), m, so that it neither sinks nor drags."""
-    free = 1.0 - ramped(kind != NONE, _LIFTING, rate)
-    short = np.maximum(_BRUSH * free - height, 0.0)
-    width = 2 * int(0.5 * _LIFTING * rate) + 1
-    smooth = averaged(maximum_filter1d(short, width)[:, None], 2 * _LIFTING, rate)[:, 0]
+    free = 1.0 - ramped(kind != NONE, LIFTING, rate)
+    smooth = lifted(np.maximum(_BRUSH * free - height, 0.0), rate)
     return np.outer(smooth * (kind == NONE), [0.0, 0.0, 1.0]) * np.minimum(free * 4.0, 1.0)[:, None]
 
 

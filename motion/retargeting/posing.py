@@ -16,7 +16,7 @@ from enpointe.motion.retargeting.holding import ramped
 from enpointe.motion.retargeting.landmarks import sided
 from enpointe.motion.retargeting.plan import Plan
 
-__all__ = ["posed"]
+__all__ = ["Asking", "posed"]
 
 Array = NDArray[np.float64]
 _DT = 1.0
@@ -45,6 +45,8 @@ _TWIST = 0.9
 """A hinge turns a limb about itself if the cosine between them is above this."""
 
 
+_DOUBTED = 0.3
+"""A segment farther off than this, as a chord, is believed half, the cost of the square halved."""
 _LOST, _BETTER = 0.45, 0.6
 """A segment farther off than this, as a chord of the unit circle, may be lost on the wrong side of
 a joint's range: the pose is sought anew, and kept if it leaves less than this share of the cost."""
@@ -59,6 +61,13 @@ class _Directions(mink.Task):
         cost = [_HAND if name.endswith("_hand") else _DIRECTION for name in names]
         super().__init__(cost=np.repeat(cost, 3))
         self.target = np.zeros((len(names), 3))
+
+    def compute_qp_residual(self, configuration: mink.Configuration) -> tuple[Array, Array, float]:
+        """Each segment's believed the less the farther it is off: nobody's may be lost."""
+        jacobian, error, damping = super().compute_qp_residual(configuration)
+        off = np.linalg.norm(self.compute_error(configuration).reshape(-1, 3), axis=1)
+        belief = np.repeat(1.0 / np.sqrt(1.0 + (off / _DOUBTED) ** 2), 3)
+        return belief[:, None] * jacobian, belief * error, damping
 
     def compute_error(self, configuration: mink.Configuration) -> Array:
         places = configuration.data.site_xpos
@@ -86,7 +95,7 @@ def posed(plan: Plan, body: Body, progress: Callable[[int, int], None] | None = 
         body: Who is asked.
         progress: Called with (done, all) now and then.
     """
-    asking = _Asking(plan, body)
+    asking = Asking(plan, body)
     model = body.model
     configuration = mink.Configuration(model, q=asking.upright(0))
     limits = [mink.ConfigurationLimit(model, gain=1.0)]
@@ -116,7 +125,7 @@ def posed(plan: Plan, body: Body, progress: Callable[[int, int], None] | None = 
     return qpos
 
 
-class _Asking:
+class Asking:
     """A plan as tasks of the inverse kinematics."""
 
     def __init__(self, plan: Plan, body: Body) -> None:
@@ -125,7 +134,7 @@ class _Asking:
         self._directions = _Directions(body, names)
         self._wanted = np.stack([plan.directions[name] for name in names], axis=1)
         self._limbs = np.array([not name.endswith("_hand") for name in names])
-        self._plan, self._rest = plan, body.rest
+        self.plan, self._rest = plan, body.rest
         self.frames: dict[str, Array] = {}
         self._turned: dict[str, mink.FrameTask] = {}
         self._across: dict[str, Array] = {}
@@ -150,13 +159,13 @@ class _Asking:
         self._posture = mink.PostureTask(model, cost=_posture_cost(model))
         self._posture.set_target(body.rest)
         steady = mink.DampingTask(model, cost=_steady_cost(body))
-        self.tasks = [
+        self.wanted: list[mink.Task] = [
             self._directions,
             *self._turned.values(),
             *self._ankles.values(),
             self._posture,
-            steady,
         ]
+        self.tasks: list[mink.BaseTask] = [*self.wanted, steady]
 
     def _add_turned(self, body: Body, part: str, turns: Array, cost: float) -> None:
         name = body.model.body(body.bodies[part]).name
@@ -168,7 +177,7 @@ class _Asking:
     def upright(self, i: int) -> Array:
         """The pose at rest, with the pelvis as sample `i` has it."""
         pose = self._rest.copy()
-        pose[:3] = self._plan.pelvis[i]
+        pose[:3] = self.plan.pelvis[i]
         pose[3:7] = self.frames["pelvis"][i]
         return pose
 
@@ -189,10 +198,10 @@ class _Asking:
         self._directions.target = self._wanted[i]
         self._pelvis.set_position_cost(float(self._root[i]))
         for part, task in self._turned.items():
-            place = self._plan.pelvis[i] if part == "pelvis" else np.zeros(3)
+            place = self.plan.pelvis[i] if part == "pelvis" else np.zeros(3)
             task.set_target(mink.SE3(np.concatenate([self.frames[part][i], place])))
         for side, task in self._ankles.items():
-            foot = self._plan.feet[side]
+            foot = self.plan.feet[side]
             stands = foot.kind[i] != NONE
             task.set_position_cost(_PLANTED if stands else _FREE)
             task.set_target(mink.SE3.from_translation(foot.ankle[i]))

@@ -13,26 +13,25 @@ from numpy.typing import NDArray
 from enpointe.models.anatomy import SIDES
 from enpointe.models.dancer import dancer_model
 from enpointe.models.soles import sole_geoms
-from enpointe.motion.averaging import averaged_qpos
 from enpointe.motion.contact_schedule import ON_FLOOR, ContactSchedule, trace_soles
 from enpointe.motion.formats.content import Content, Payload
 from enpointe.motion.formats.registry import read
 from enpointe.motion.motion import Motion
 from enpointe.motion.retargeting.body import BALL, HEEL, NONE, TIP, Body
 from enpointe.motion.retargeting.floor import levelled, steps_of
+from enpointe.motion.retargeting.flowing import flowing
 from enpointe.motion.retargeting.joint_map import JointMap
 from enpointe.motion.retargeting.pinning import pinned
 from enpointe.motion.retargeting.plan import Plan, make_plan
 from enpointe.motion.retargeting.posing import posed
 from enpointe.motion.retargeting.proposing import point_names, propose_map
 from enpointe.motion.retargeting.residual import Residual, residuals
+from enpointe.motion.retargeting.skating import slides
 from enpointe.motion.retargeting.source import Source, source_of
 
 __all__ = ["Retargeted", "retarget"]
 
 Array = NDArray[np.float64]
-_KINKS = 0.032
-"""s: what is left of kinks where feet come and go is averaged away over this width."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +46,8 @@ class Retargeted:
         warnings: What was doubtful and how it was taken, one line each.
         residuals: Of each segment and part, how far its direction is from the captured one.
         scale: Size of the body over that of the captured one.
+        slides: By side, (T,), how far the captured foot, in its own size, has slid since it came to
+            bear, m; see `skating`.
     """
 
     motion: Motion
@@ -56,6 +57,7 @@ class Retargeted:
     warnings: tuple[str, ...]
     residuals: Mapping[str, Residual]
     scale: float
+    slides: Mapping[str, Array]
 
 
 def retarget(
@@ -94,8 +96,9 @@ def retarget(
     body = model if isinstance(model, Body) else Body(dancer_model() if model is None else model)
     source = levelled(source_of(payload, mapping))
     scale = body.leg / _leg(source)
-    plan = make_plan(source, body, steps_of(source, body, scale), scale)
-    qpos = averaged_qpos(posed(plan, body, progress), _KINKS, source.rate)
+    steps = steps_of(source, body, scale)
+    plan = make_plan(source, body, steps, scale)
+    qpos = flowing(plan, body, posed(plan, body, progress))
     qpos = pinned(plan, body, qpos)
     motion = Motion.from_qpos(body.model, source.time, qpos, name=name)
     return Retargeted(
@@ -106,6 +109,7 @@ def retarget(
         (*warnings, *source.warnings),
         residuals(plan, body, motion),
         scale,
+        slides(steps, source.time),
     )
 
 

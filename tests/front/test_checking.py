@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 import enpointe
 from enpointe.cli import _run
 from enpointe.motion import Motion
+from enpointe.motion.formats import SkeletonMotion, read, write
 from enpointe.motion.npz import save_motion
 
 from .commands import one_object, refused
@@ -65,3 +67,31 @@ def test_what_is_no_motion_is_refused(home: Path, capfd: pytest.CaptureFixture[s
     assert "expected" in refused(capfd, "check", "other.npz")
     (home / "text.npz").write_text("hello")
     assert "no motion file that is known" in refused(capfd, "check", "text.npz")
+
+
+@pytest.mark.parametrize(
+    ("take", "frames"), [("05_14", (230, 360)), ("05_11", (160, 280)), ("05_16", (180, 290))]
+)
+def test_a_capture_is_corrected(
+    take: str,
+    frames: tuple[int, int],
+    data_dir: Path,
+    home: Path,
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    """At its own rate, frame for frame."""
+    source = data_dir / "cmu_05" / f"{take}.amc"
+    if not source.exists():
+        pytest.skip("no data here")
+    captured = read(source).motion
+    assert isinstance(captured, SkeletonMotion)
+    values = captured.values[slice(*frames, 4)]
+    write(replace(captured, values=values, rate=captured.rate / 4), home / "piece.bvh")
+    assert _run(["check", "piece.bvh", "--out", "looked", "--correct", "--json"]) in (0, 1)
+    figures = one_object(capfd.readouterr().out)
+    corrected = read(home / "looked" / "corrected.bvh").motion
+    assert isinstance(corrected, SkeletonMotion)
+    assert corrected.frames == len(values)
+    assert corrected.rate == pytest.approx(captured.rate / 4, rel=1e-4)
+    assert np.isfinite(corrected.values).all()
+    assert {slide["foot"] for slide in figures["slides"]} == {"left", "right"}
