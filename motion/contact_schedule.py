@@ -62,14 +62,22 @@ class ContactSchedule:
         return np.asarray(self.bears[self.index(t)])
 
 
-def contact_schedule(motion: Motion) -> ContactSchedule:
-    """Plan the contacts of a motion from its heights and speeds."""
+def contact_schedule(
+    motion: Motion, *, on_floor: float = ON_FLOOR, at_rest: float = AT_REST
+) -> ContactSchedule:
+    """Plan the contacts of a motion from its heights and speeds.
+
+    Args:
+        motion: What is to be danced, or what somebody drew or captured.
+        on_floor: A sole nearer to the floor than this, m, is on it.
+        at_rest: A sole slower than this, m/s, is not sliding.
+    """
     model = motion.model
     soles = sole_geoms(model)
     points = trace_soles(motion, soles)
     speed = np.linalg.norm(np.gradient(points[:, :, :2], motion.time, axis=0), axis=2)
-    down = points[:, :, 2] < ON_FLOOR
-    planted = without_chatter(down & (speed < AT_REST), float(np.median(np.diff(motion.time))))
+    down = points[:, :, 2] < on_floor
+    planted = without_chatter(down & (speed < at_rest), float(np.median(np.diff(motion.time))))
     planted = _held_over(planted, down)
     return ContactSchedule(motion.time, soles, points, _stood_on(model, soles, planted))
 

@@ -40,6 +40,9 @@ SHORTEST_TURN = 0.125
 """Revolutions: less is a change of facing."""
 BEYOND = np.radians(0.1)
 """A joint this far beyond its range, rad, is there by more than rounding."""
+MEANT_DOWN, MEANT_STILL = 0.005, 0.10
+"""m and m/s: a sole nearer to the floor and slower than this is meant to stand, and slides. What is
+made to be danced keeps its feet better than that; what was drawn or captured may not."""
 HELP_MAX = 0.05
 """Of body weight: what is missing below this is the noise of what was measured or drawn; with more,
 rms, a movement is not one that can be danced."""
@@ -191,7 +194,8 @@ def check_motion(
         averaged_over: s; forces and momentum are those of the movement averaged over this window,
             since two differences of what was measured are mostly noise (Winter 2009).
     """
-    contacts = contact_schedule(motion) if contacts is None else contacts
+    if contacts is None:
+        contacts = contact_schedule(motion, on_floor=MEANT_DOWN, at_rest=MEANT_STILL)
     steady = _averaged(motion, averaged_over) if averaged_over > 0.0 else motion
     body = _Movement.of(motion, steady)
     # Every sole that stands counts alike: the movement does not say how it shares the weight.

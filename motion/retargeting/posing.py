@@ -165,7 +165,7 @@ class Asking:
             *self._ankles.values(),
             self._posture,
         ]
-        self.tasks: list[mink.BaseTask] = [*self.wanted, steady]
+        self.tasks: list[mink.Task] = [*self.wanted, steady]
 
     def _add_turned(self, body: Body, part: str, turns: Array, cost: float) -> None:
         name = body.model.body(body.bodies[part]).name
