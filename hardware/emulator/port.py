@@ -10,7 +10,7 @@ import serial
 from dynamixel_sdk import PortHandler
 
 from enpointe.hardware.emulator.bus import Bus
-from enpointe.hardware.emulator.clock import VirtualClock
+from enpointe.hardware.clock import VirtualClock
 
 __all__ = ["EmulatedPort"]
 
