@@ -29,7 +29,7 @@ from enpointe.hardware.time_scale import (
 )
 from enpointe.hardware.warming import Warmth, longest_overload, warmth
 
-__all__ = ["BODY", "Excess", "Feasibility", "assess"]
+__all__ = ["BODY", "Assessment", "Excess", "assess"]
 
 Array = NDArray[np.float64]
 BODY = ""
@@ -67,7 +67,7 @@ class Excess:
 
 
 @dataclass(frozen=True)
-class Feasibility:
+class Assessment:
     """The verdict on a movement.
 
     Attributes:
@@ -157,7 +157,7 @@ def _figures(excess: Excess) -> dict[str, object]:
     }
 
 
-def assess(demand: Demand, limits: Sequence[JointLimit], *, repeats: int = 1) -> Feasibility:
+def assess(demand: Demand, limits: Sequence[JointLimit], *, repeats: int = 1) -> Assessment:
     """Look at a movement for servos.
 
     Args:
@@ -183,7 +183,7 @@ class _Judgement:
         self._models = [limit.model for limit in limits]
         self._rows = joint_rows(demand, limits) + [_ground_rows(g) for g in demand.ground]
 
-    def verdict(self) -> Feasibility:
+    def verdict(self) -> Assessment:
         demand, limits = self._demand, self._limits
         speed = None
         if not demand.collisions:
@@ -192,7 +192,7 @@ class _Judgement:
         scale = None if speed is None else 1.0 if feasible else (1.0 + _ABOVE) / speed
         excesses = sorted(self._excesses(), key=_urgency)
         currents_there = currents(demand, limits, 1.0 / (scale or 1.0))
-        return Feasibility(
+        return Assessment(
             demand=demand,
             limits=limits,
             feasible=feasible,

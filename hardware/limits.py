@@ -12,15 +12,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from enpointe.errors import RigError
 from enpointe.hardware.datasheet import ServoModel
 from enpointe.hardware.demand import Demand
 from enpointe.hardware.time_scale import Rows
 
-__all__ = ["RESERVE", "JointLimit", "currents", "joint_rows"]
+if TYPE_CHECKING:
+    from enpointe.hardware.rig_file import Rig
+
+__all__ = ["RESERVE", "JointLimit", "currents", "joint_rows", "limits_of"]
 
 Array = NDArray[np.float64]
 RESERVE = 0.05
@@ -86,6 +91,39 @@ class JointLimit:
     def torque_left(self, speed: float) -> float:
         """N m at the horn that the usable voltage gives at a speed in the torque's direction."""
         return self.model.torque_at(speed, self.usable_voltage)
+
+
+def limits_of(
+    rig: Rig, *, voltage: float | None = None, reserve: float = RESERVE
+) -> tuple[JointLimit, ...]:
+    """The joints of a rig, in its order.
+
+    Args:
+        rig: Whose range, speed and current are kept.
+        voltage: V of its supply; each servo's recommended one if None.
+        reserve: Share of the supply that is not to be used.
+
+    Raises:
+        RigError: A reserve that leaves nothing, or a voltage that a servo does not take.
+    """
+    if not 0.0 <= reserve < 1.0:
+        raise RigError(f"a reserve is a share of the supply below 1, not {reserve:g}")
+    for servo in rig.servos:
+        low, high = servo.sheet.voltage_limits
+        if voltage is not None and not low <= voltage <= high:
+            raise RigError(f"a {servo.model} ({servo.joint}) takes {low:g} to {high:g} V")
+    return tuple(
+        JointLimit(
+            servo.joint,
+            servo.sheet,
+            *servo.range,
+            servo.top_speed,
+            servo.current * 1e-3 or None,
+            voltage,
+            reserve,
+        )
+        for servo in rig.servos
+    )
 
 
 def currents(demand: Demand, limits: Sequence[JointLimit], speed: float = 1.0) -> Array:

@@ -14,7 +14,7 @@ from enpointe.errors import RigError
 from enpointe.hardware import datasheet
 from enpointe.hardware.demand import Collision, Demand, GroundRows
 from enpointe.hardware.emulator.motor import ROOM, Motor
-from enpointe.hardware.feasibility import Feasibility, assess
+from enpointe.hardware.feasibility import Assessment, assess
 from enpointe.hardware.limits import JointLimit, currents
 from enpointe.hardware.time_scale import SLOWEST, Rows, allowed_speeds
 from enpointe.hardware.warming import warmth
@@ -36,7 +36,7 @@ def swing(
     return Demand(("knee",), TIME, *(array[:, None] for array in arrays))
 
 
-def looked_at(demand: Demand, limit: JointLimit = FREE, **rest: int) -> Feasibility:
+def looked_at(demand: Demand, limit: JointLimit = FREE, **rest: int) -> Assessment:
     return assess(demand, [limit], **rest)
 
 
