@@ -11,8 +11,6 @@ from enpointe.errors import MotionError
 from enpointe.preparing import Progress, silent
 
 if TYPE_CHECKING:
-    import mujoco
-
     from enpointe.hardware.demand import Collision, Demand
     from enpointe.hardware.feasibility import Assessment, Excess
     from enpointe.hardware.rig_file import Rig
@@ -20,7 +18,7 @@ if TYPE_CHECKING:
     from enpointe.motion.contact_schedule import ContactSchedule
     from enpointe.sim.joint_loads import JointLoads
 
-__all__ = ["Feasibility", "body_of", "demand_of", "feasible"]
+__all__ = ["Feasibility", "collision_words", "demand_of", "feasible"]
 
 _TOUCHING = 5e-4
 """m: shapes that are in one another by less than this touch, and do not collide."""
@@ -44,6 +42,125 @@ class Feasibility:
 
     @property
     def feasible(self) -> bool:
+        """Whether the rig can dance it as written."""
+        return self.assessment.feasible
+
+    @property
+    def time_scale(self) -> float | None:
+        """The least number of times its time in which it can; None if slowing does not help."""
+        return self.assessment.time_scale
+
+    @property
+    def limiting_joints(self) -> tuple[str, ...]:
+        """Joints that are beyond a limit as written, the one that needs most time first."""
+        return self.assessment.limiting_joints
+
+    @cached_property
+    def slowed(self) -> Motion:
+        """The movement as the rig can dance it.
+
+        Raises:
+            MotionError: No time scale makes it feasible; says why.
+        """
+        from enpointe.motion.slowing import slowed
+
+        if self.time_scale is None:
+            raise MotionError(f"no time is enough for {self.motion.name}: {self.reasons[0]}")
+        return self.motion if self.time_scale == 1.0 else slowed(self.motion, self.time_scale)
+
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """What stands in the way as written, one line each, the worst first; empty if nothing."""
+        found = [collision_words(each) for each in self.assessment.collisions]
+        return (*found, *(self.excess_words(each) for each in self.assessment.excesses))
+
+    def excess_words(self, excess: Excess) -> str:
+        """One limit in words: joint, moment, by how much, and the time that it needs."""
+        help_ = (
+            "no time helps"
+            if excess.time_scale is None
+            else f"{excess.time_scale:.2f} times the time is enough"
+        )
+        who = excess.joint or "the body"
+        return f"{who} at {self.moment(excess.time)}: {_amount(excess)}; {help_}"
+
+    def moment(self, time: float) -> str:
+        """A moment in seconds, and between which key poses it is."""
+        events = self.motion.key_events
+        before = [event for event in events if event.time <= time + 1e-9]
+        after = [event for event in events if event.time > time + 1e-9]
+        if before and after:
+            return f"{time:.2f} s, {before[-1].name} to {after[0].name}"
+        return f"{time:.2f} s"
+
+    def summary(self) -> dict[str, object]:
+        """The figures that `--json` prints, SI units; the names are a promise to scripts."""
+        return {
+            **self.assessment.summary(),
+            "rig": self.rig.name,
+            "stand": self.stand,
+            "reasons": list(self.reasons),
+        }
+
+    def lines(self) -> list[tuple[str, str]]:
+        """The same for people: what, and its value in words."""
+        scale = self.time_scale
+        verdict = (
+            "as written"
+            if self.feasible
+            else "in no time"
+            if scale is None
+            else f"in {scale:.3f} times its time"
+        )
+        return [("feasible", verdict), *(("because", reason) for reason in self.reasons)]
+
+
+_WORDS = {
+    "speed": "the limit of speed",
+    "acceleration": "what the rotor can be accelerated with",
+    "current": "the limit of current",
+    "position": "the range",
+}
+
+
+def _amount(excess: Excess) -> str:
+    """What is asked and what there is, in the units that people read."""
+    from math import degrees
+
+    needed, allowed = excess.needed, excess.allowed
+    match excess.kind:
+        case "position" | "speed" | "acceleration":
+            unit = {"rad": "°", "rad/s": "°/s", "rad/s^2": "°/s²"}[excess.unit]
+            values = f"{degrees(needed):.0f}{unit}, and {_WORDS[excess.kind]} is"
+            return f"{values} {degrees(allowed):.0f}{unit}"
+        case "torque":
+            left = f"has {allowed:.2f} N m" if allowed > 0.0 else "gives none"
+            return (
+                f"{needed:.2f} N m, and the servo {left} at that speed"
+                f" ({100 * excess.used:.0f} % of the voltage)"
+            )
+        case "current":
+            return f"{needed:.2f} A, and the limit of current is {allowed:.2f} A"
+        case "heat":
+            return f"{needed:.0f} K warmer than the room, and {allowed:.0f} K shut it down"
+        case "overload":
+            return f"overloaded for {needed:.1f} s, and {allowed:.1f} s shut it down"
+        case "balance":
+            return f"the zero-moment point is {1000 * needed:.0f} mm beyond the support"
+        case "push":
+            return f"the floor would have to pull with {100 * needed:.0f} % of the weight"
+        case "friction":
+            return f"soles slide: {100 * needed:.0f} % of the weight beyond what friction holds"
+    return f"in the air {100 * needed:.0f} % of the weight off free fall"
+
+
+def collision_words(collision: Collision) -> str:
+    """A collision in words."""
+    parts, depth = f"{collision.first} and {collision.second}", 1000 * collision.depth
+    return f"{parts} are {depth:.0f} mm in one another at {collision.time:.2f} s; no time helps"
+
+
+def feasible(self) -> bool:
         """Whether the rig can dance it as written."""
         return self.assessment.feasible
 

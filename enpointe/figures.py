@@ -15,12 +15,14 @@ __all__ = [
     "FitFigures",
     "FlightFigures",
     "KinematicFigures",
+    "LatenessFigures",
     "PerformanceFigures",
     "PhysicalFigures",
     "PoseFigures",
     "PosesFigures",
     "RuleFigures",
     "RuleKeptFigures",
+    "ServoFigures",
     "SweepFailure",
     "SweepFigures",
 ]
@@ -199,3 +201,32 @@ class SweepFigures(TypedDict):
     runs_per_second: float | None
     root_force_max: float | None
     failures: list[SweepFailure]
+
+
+class LatenessFigures(TypedDict):
+    """How late a loop woke, s."""
+
+    median: float
+    p99: float
+    worst: float
+
+
+class ServoFigures(TypedDict):
+    """A dance of servos."""
+
+    title: str
+    rig: str
+    port: str
+    completed: bool
+    duration: float
+    baud: int
+    rate: float
+    bus_ceiling_hz: float
+    achieved_hz: float
+    deadline_misses: int
+    lateness: LatenessFigures
+    frame_loss: float
+    faults: list[str]
+    ending: str
+    tracking_rms_deg: float
+    tracking_rms_deg_by_joint: dict[str, float]

@@ -108,6 +108,13 @@ class Assessment:
         """Where the body is in its own way."""
         return self.demand.collisions
 
+    def used(self, speed: float = 1.0) -> Array:
+        """(T, J), the share of its tightest limit that each joint uses, at a share of the speed."""
+        most = np.full(self.demand.position.shape, -np.inf)
+        for rows in joint_rows(self.demand, self.limits):
+            np.maximum.at(most, (rows.sample, rows.joint), rows.used(speed))
+        return most
+
     def summary(self) -> dict[str, object]:
         """The figures that `--json` prints, SI units; the names are a promise to scripts."""
         hottest = self.warmth.after(self.repeats)

@@ -42,10 +42,6 @@ from enpointe.hardware.units import PULSE
 __all__ = ["Ending", "ServoRig", "Statistics"]
 
 Array = NDArray[np.float64]
-_RAMP = 2.0
-"""s at least for the way to the first pose, and back."""
-_RAMP_SPEED = 0.5
-"""rad/s at most on it."""
 _CUT = 1.0
 """s for which letting go is tried."""
 _PARKING = 20.0
@@ -300,8 +296,8 @@ class ServoRig:
         """A smooth, slow way to a pose; whether it was reached."""
         begin = self._codec.angle(self._gate.goal)
         longest = float(np.abs(target - begin).max())
-        slowest = min(_RAMP_SPEED, float(min(servo.top_speed for servo in self.rig.servos)))
-        duration = max(_RAMP, longest * math.pi / 2.0 / slowest)
+        slowest = min(self._limits.ramp_speed, float(min(servo.top_speed for servo in self.rig.servos)))
+        duration = max(self._limits.ramp, longest * math.pi / 2.0 / slowest)
         start = self.clock.now()
         while self.ending is Ending.RUNNING:
             done = min((self.clock.now() - start) / duration, 1.0)

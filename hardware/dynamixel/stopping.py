@@ -14,14 +14,23 @@ class StopButton:
     """Counts how often it was pressed; pressing is safe in a signal handler."""
 
     def __init__(self) -> None:
-        self.presses = 0
+        self._presses = 0
         self.why = "stopped by hand"
+
+    @property
+    def presses(self) -> int:
+        """How often, up to now."""
+        self.look()
+        return self._presses
+
+    def look(self) -> None:
+        """See whether somebody pressed; nothing to see here."""
 
     def press(self, why: str = "stopped by hand") -> None:
         """Ask to stop."""
-        if not self.presses:
+        if not self._presses:
             self.why = why
-        self.presses += 1
+        self._presses += 1
 
     @contextlib.contextmanager
     def on_signals(self) -> Iterator[None]:

@@ -59,6 +59,8 @@ class SafetyLimits:
         error_time: ... for so many s, before all let go: something or somebody is in the way.
         heat_margin: Degrees Celsius below a servo's own limit at which the rig parks.
         watchdog: s after which a servo that hears nothing stops by itself; in steps of 20 ms.
+        ramp: s at least for the way to the first pose and the way back.
+        ramp_speed: rad/s, the most on it.
     """
 
     silence: float = 0.1
@@ -68,6 +70,8 @@ class SafetyLimits:
     error_time: float = 0.25
     heat_margin: float = 5.0
     watchdog: float = 0.1
+    ramp: float = 2.0
+    ramp_speed: float = 0.5
 
 
 _WORDS = {
