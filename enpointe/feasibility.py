@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from enpointe.motion.contact_schedule import ContactSchedule
     from enpointe.sim.joint_loads import JointLoads
 
-__all__ = ["Feasibility", "collision_words", "demand_of", "feasible"]
+__all__ = ["Feasibility", "collision_words", "demand_of", "excess_amount", "feasible"]
 
 _TOUCHING = 5e-4
 """m: shapes that are in one another by less than this touch, and do not collide."""
@@ -82,7 +82,7 @@ class Feasibility:
             else f"{excess.time_scale:.2f} times the time is enough"
         )
         who = excess.joint or "the body"
-        return f"{who} at {self.moment(excess.time)}: {_amount(excess)}; {help_}"
+        return f"{who} at {self.moment(excess.time)}: {excess_amount(excess)}; {help_}"
 
     def moment(self, time: float) -> str:
         """A moment in seconds, and between which key poses it is."""
@@ -123,7 +123,7 @@ _WORDS = {
 }
 
 
-def _amount(excess: Excess) -> str:
+def excess_amount(excess: Excess) -> str:
     """What is asked and what there is, in the units that people read."""
     from math import degrees
 

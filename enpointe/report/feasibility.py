@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from enpointe.feasibility import Feasibility, collision_words
+from enpointe.feasibility import Feasibility, collision_words, excess_amount
 from enpointe.files import write_bytes
 from enpointe.hardware.feasibility import Excess
 from enpointe.motion.joint_timing import TimingKept
@@ -104,15 +104,15 @@ def _limits(found: Feasibility) -> tuple[Block, ...]:
             excess.joint or "the body",
             (
                 Cell(excess.kind),
-                Cell(_spans(excess)),
-                Cell(found.excess_words(excess).split("; ")[0].split(" at ", 1)[1], excess.used),
                 _scale(excess),
+                Cell(_beyond(excess)),
+                Cell(f"{found.moment(excess.time)}: {excess_amount(excess)}", excess.used),
             ),
         )
         for excess in assessment.excesses
     )
     if rows:
-        heads = ("Joint", "limit", "beyond it, s", "at its worst", "time that is enough")
+        heads = ("Joint", "limit", "time enough", "beyond it for", "at its worst")
         blocks.append(Table("Every limit that is broken as written", heads, rows, prose=True))
     return tuple(blocks)
 
@@ -123,9 +123,11 @@ def _scale(excess: Excess) -> Cell:
     return Cell(f"× {excess.time_scale:.3f}", excess.time_scale)
 
 
-def _spans(excess: Excess) -> str:
-    shown = [f"{start:.2f}–{end:.2f}" for start, end in excess.spans[:4]]
-    return ", ".join(shown) + (f" and {len(excess.spans) - 4} more" if excess.spans[4:] else "")
+def _beyond(excess: Excess) -> str:
+    """For how long in all, and how often."""
+    seconds = sum(end - start for start, end in excess.spans)
+    times = f", {len(excess.spans)} times" if excess.spans[1:] else ""
+    return f"{seconds:.2f} s{times}"
 
 
 def _nearest(found: Feasibility) -> Table:

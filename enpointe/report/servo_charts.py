@@ -22,6 +22,8 @@ _MOST = 2.0
 """Share of a limit from which the colour is the strongest."""
 _COLUMNS = 600
 _ABREAST = 3
+_TALLEST = 2.5
+"""Of the stall torque: what is higher is cut off, or the servo itself could not be seen."""
 
 
 @quiet
@@ -67,6 +69,9 @@ def torque_speed_chart(found: Feasibility, joints: Sequence[str], name: str) -> 
         _draw_way(axes, found, place, 1.0, COM, "as written")
         if found.time_scale is not None and not found.feasible:
             _draw_way(axes, found, place, found.time_scale, LEFT, f"× {found.time_scale:.2f}")
+        most = _TALLEST * assessment.limits[place].model.stall_torque
+        low, high = axes.get_ylim()
+        axes.set_ylim(max(low, -most), min(high, most))
         axes.set_title(joint)
         axes.set_xlabel("speed, °/s")
     for row in grid:
