@@ -103,16 +103,20 @@ class Feasibility:
         }
 
     def lines(self) -> list[tuple[str, str]]:
-        """The same for people: what, and its value in words."""
-        scale = self.time_scale
-        verdict = (
-            "as written"
-            if self.feasible
-            else "in no time"
-            if scale is None
-            else f"in {scale:.3f} times its time"
-        )
-        return [("feasible", verdict), *(("because", reason) for reason in self.reasons)]
+        """The same for people: what, and its value in words; of each joint its worst limit."""
+        scale, servos = self.time_scale, self.assessment.servo_scale
+        if self.feasible:
+            return [("feasible", "as written")]
+        rows = [("feasible", "in no time" if scale is None else f"in {scale:.3f} times its time")]
+        if scale is None and servos is not None:
+            rows.append(("the servos alone", f"in {servos:.3f} times its time"))
+        rows += [("because", collision_words(each)) for each in self.assessment.collisions]
+        shown: set[str] = set()
+        for excess in self.assessment.excesses:
+            if excess.joint not in shown:
+                rows.append(("because", self.excess_words(excess)))
+            shown.add(excess.joint)
+        return rows
 
 
 _WORDS = {

@@ -76,10 +76,12 @@ class Assessment:
         feasible: As written.
         time_scale: The least number of times its time in which it is feasible; 1 if it is as
             written; None if none helps.
-        excesses: Every limit that is broken as written, the one that needs most time first.
+        servo_scale: The same for the servos alone, without balance and collisions.
+        excesses: Every limit that is broken as written, the one that needs most time first; where
+            no time helps, as it is at rest.
         nearest: The joints' limits that are used most, one a joint, most first.
         decisive: What forbids a time scale a little less than the one found; None if feasible.
-        warmth: As written, or at the time scale found.
+        warmth: As written, or at the time scale found (that of the servos, if no other was).
         repeats: How often it was to be danced without a pause.
     """
 
@@ -87,6 +89,7 @@ class Assessment:
     limits: tuple[JointLimit, ...] = field(repr=False)
     feasible: bool
     time_scale: float | None
+    servo_scale: float | None
     excesses: tuple[Excess, ...]
     nearest: tuple[Excess, ...]
     decisive: Excess | None
@@ -121,6 +124,7 @@ class Assessment:
         return {
             "feasible": self.feasible,
             "time_scale": self.time_scale,
+            "time_scale_of_servos": self.servo_scale,
             "duration": float(self.demand.time[-1] - self.demand.time[0]),
             "repeats": self.repeats,
             "limiting_joints": [
@@ -192,22 +196,27 @@ class _Judgement:
 
     def verdict(self) -> Assessment:
         demand, limits = self._demand, self._limits
+        servos = [rows for rows in self._rows if (rows.joint >= 0).all()]
+        servo_speed = fastest_lasting(allowed_speeds(servos), self._lasts)
         speed = None
         if not demand.collisions:
             speed = fastest_lasting(allowed_speeds(self._rows), self._lasts)
         feasible = speed is not None and speed >= 1.0
-        scale = None if speed is None else 1.0 if feasible else (1.0 + _ABOVE) / speed
+        scale = _scale(speed)
         excesses = sorted(self._excesses(), key=_urgency)
-        currents_there = currents(demand, limits, 1.0 / (scale or 1.0))
+        danced = scale or _scale(servo_speed) or 1.0
         return Assessment(
             demand=demand,
             limits=limits,
             feasible=feasible,
             time_scale=scale,
+            servo_scale=_scale(servo_speed),
             excesses=tuple(excesses),
             nearest=tuple(self._nearest()),
             decisive=None if feasible or speed is None else self._decisive(speed),
-            warmth=warmth(demand.time * (scale or 1.0), currents_there, self._models),
+            warmth=warmth(
+                demand.time * danced, currents(demand, limits, 1.0 / danced), self._models
+            ),
             repeats=self._repeats,
         )
 
@@ -240,14 +249,16 @@ class _Judgement:
 
     def _excess(self, kind: str, joint: int, rows: list[Rows]) -> Excess:
         time = self._demand.time
-        used = np.concatenate([each.used() for each in rows])
+        allowed = allowed_speeds(rows)
+        speed = allowed[0][1] if allowed else None
+        looked_at = 1.0 if allowed else 1.0 / SLOWEST
+        used = np.concatenate([each.used(looked_at) for each in rows])
         samples = np.concatenate([each.sample for each in rows])
         worst = int(np.argmax(used))
         beyond = np.zeros(len(time), dtype=bool)
         beyond[samples[used > 1.0 + TOLERANCE]] = True
-        allowed = allowed_speeds(rows)
-        speed = allowed[0][1] if allowed else None
-        needed, limit, unit = self._meaning(kind, joint, int(samples[worst]), float(used[worst]))
+        place = (int(samples[worst]), float(used[worst]), looked_at)
+        needed, limit, unit = self._meaning(kind, joint, *place)
         return Excess(
             BODY if joint < 0 else self._limits[joint].joint,
             kind,
@@ -265,14 +276,16 @@ class _Judgement:
             return float(self._lasting(speed)[kind][joint]) <= 1.0
 
         speed = fastest_lasting(((1.0 / SLOWEST, 1.0),), lasts)
-        needed, limit, unit = self._meaning(kind, joint, len(self._demand.time) - 1, used)
+        needed, limit, unit = self._meaning(kind, joint, -1, used, 1.0)
         end = float(self._demand.time[-1])
         scale = None if speed is None else 1.0 / speed
         name = self._limits[joint].joint
         return Excess(name, kind, end, needed, limit, unit, used, ((0.0, end),), scale)
 
-    def _meaning(self, kind: str, joint: int, sample: int, used: float) -> tuple[float, float, str]:
-        """What a share of a limit is in SI: needed, allowed, unit."""
+    def _meaning(
+        self, kind: str, joint: int, sample: int, used: float, speed: float
+    ) -> tuple[float, float, str]:
+        """What a share of a limit is in SI, at a share of the speed: needed, allowed, unit."""
         demand = self._demand
         if joint < 0:
             found = next(ground for ground in demand.ground if ground.kind == kind)
@@ -282,9 +295,9 @@ class _Judgement:
             angle = float(demand.position[sample, joint])
             return angle, limit.upper if angle > limit.upper else limit.lower, "rad"
         if kind == "torque":
-            torque = float(demand.torque[sample, joint])
-            speed = float(demand.velocity[sample, joint]) * (1.0 if torque >= 0.0 else -1.0)
-            return abs(torque), limit.torque_left(speed), "N m"
+            load = demand.static[sample, joint] + speed**2 * demand.dynamic[sample, joint]
+            turning = speed * demand.velocity[sample, joint] * np.copysign(1.0, load)
+            return abs(float(load)), limit.torque_left(float(turning)), "N m"
         allowed, unit = {
             "speed": (limit.greatest_speed, "rad/s"),
             "acceleration": (limit.greatest_acceleration, "rad/s^2"),
@@ -328,6 +341,13 @@ class _Judgement:
             return self._lasting_excess(kind, joint, share)
         alike = [rows.only(rows.joint == joint) for rows in self._rows if rows.kind == kind]
         return self._excess(kind, joint, alike)
+
+
+def _scale(speed: float | None) -> float | None:
+    """Times the time, for the share of the speed that is left."""
+    if speed is None or speed >= 1.0:
+        return None if speed is None else 1.0
+    return (1.0 + _ABOVE) / speed
 
 
 def _ground_rows(ground: GroundRows) -> Rows:

@@ -21,6 +21,7 @@ from enpointe.errors import RigError
 from enpointe.hardware.datasheet import ServoModel
 from enpointe.hardware.demand import Demand
 from enpointe.hardware.time_scale import Rows
+from enpointe.hardware.units import PULSE
 
 if TYPE_CHECKING:
     from enpointe.hardware.rig_file import Rig
@@ -134,7 +135,7 @@ def currents(demand: Demand, limits: Sequence[JointLimit], speed: float = 1.0) -
 
 
 def joint_rows(demand: Demand, limits: Sequence[JointLimit]) -> list[Rows]:
-    """What each joint must keep at each moment.
+    """What each joint must keep at each moment; of its range, to the pulse that a servo can tell.
 
     Args:
         demand: The movement.
@@ -142,7 +143,7 @@ def joint_rows(demand: Demand, limits: Sequence[JointLimit]) -> list[Rows]:
     """
     zero = np.zeros_like(demand.position)
     low, high = (np.array([getattr(x, n) for x in limits]) for n in ("lower", "upper"))
-    half, middle = 0.5 * (high - low), 0.5 * (high + low)
+    half, middle = 0.5 * (high - low) + PULSE, 0.5 * (high + low)
     speed = np.array([x.greatest_speed for x in limits])
     rise = np.array([x.greatest_acceleration for x in limits])
     most = np.array([x.greatest_current for x in limits])

@@ -100,6 +100,13 @@ def _half_planes(hull: Array) -> tuple[Array, Array]:
 
 
 def _limit(kind: str, unit: str, rows: Iterable[_Row]) -> FloorLimit:
-    columns = list(zip(*rows, strict=True)) or [[np.empty(0, dtype=np.int64)], [[]], [[]]]
-    sample, constant, dynamic = (np.concatenate(column) for column in columns)
-    return FloorLimit(kind, unit, sample.astype(np.int64), constant, dynamic)
+    parts = list(rows)
+    if not parts:
+        return FloorLimit(kind, unit, np.empty(0, dtype=np.int64), np.empty(0), np.empty(0))
+    return FloorLimit(
+        kind,
+        unit,
+        np.concatenate([part[0] for part in parts]),
+        np.concatenate([part[1] for part in parts]),
+        np.concatenate([part[2] for part in parts]),
+    )

@@ -83,7 +83,13 @@ def _verdict(found: Feasibility) -> str:
     if found.feasible:
         return f"The servos of {name} can dance this as it is written."
     if found.time_scale is None:
-        return f"The servos of {name} cannot dance this in any time: {found.reasons[0]}."
+        servos = found.assessment.servo_scale
+        alone = (
+            ""
+            if servos is None
+            else f" The servos alone could follow in {servos:.3f} times its time."
+        )
+        return f"{name} cannot dance this in any time: {found.reasons[0]}.{alone}"
     slower = (
         f"In {found.time_scale:.3f} times its time the servos of {name} can dance this, with every "
         "proportion of rhythm and effort as it was; as written they cannot."
@@ -160,7 +166,7 @@ def _heat(found: Feasibility) -> Table:
         )
         for i in sorted(range(len(hottest)), key=lambda i: -hottest[i])
     )
-    scale = found.time_scale or 1.0
+    scale = found.time_scale or assessment.servo_scale or 1.0
     danced = "danced once" if assessment.repeats == 1 else f"danced {assessment.repeats} times"
     caption = f"After it was {danced} at × {scale:.2f}, from {warmth.room:.0f} °C"
     return Table(caption, ("Joint", "at the most", "shuts down at", "dances in a row"), rows)

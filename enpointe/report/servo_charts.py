@@ -67,8 +67,9 @@ def torque_speed_chart(found: Feasibility, joints: Sequence[str], name: str) -> 
         place = assessment.demand.joints.index(joint)
         _draw_line(axes, assessment.limits[place])
         _draw_way(axes, found, place, 1.0, COM, "as written")
-        if found.time_scale is not None and not found.feasible:
-            _draw_way(axes, found, place, found.time_scale, LEFT, f"× {found.time_scale:.2f}")
+        scale = found.time_scale or assessment.servo_scale
+        if scale is not None and scale > 1.0:
+            _draw_way(axes, found, place, scale, LEFT, f"× {scale:.2f}")
         most = _TALLEST * assessment.limits[place].model.stall_torque
         low, high = axes.get_ylim()
         axes.set_ylim(max(low, -most), min(high, most))

@@ -213,7 +213,7 @@ def write_mcap(trajectory: JointTrajectory, path: Path, recording: Performed | N
             schema = writer.register_msgdef("sensor_msgs/msg/JointState", _STATE)
             for moment, state in _states(recording, trajectory):
                 writer.write_message(STATES, schema, state, moment, moment)
-        writer.finish()
+        writer.finish()  # type: ignore[no-untyped-call]
     return path
 
 
