@@ -38,7 +38,6 @@ import numpy as np
 
 from enpointe.controllers import Command, Recording, State, perform
 from enpointe.errors import EnpointeError
-from enpointe.hardware.control_table import control_table
 from enpointe.hardware.dynamixel import Layout, Link, SafetyLimits, ServoRig, description_of
 from enpointe.hardware.emulator import (
     Bus,
@@ -105,9 +104,7 @@ def drawn_faults(rng: np.random.Generator, rig: Rig, kind: FaultKind) -> tuple[F
         FaultKind.BROWN_OUT: float(rng.uniform(2.0, 11.0)),
         FaultKind.OVERHEAT: float(rng.uniform(60.0, 110.0)),
     }
-    fault = Fault(
-        kind, ids, (at, at), (duration, duration), share, amounts.get(kind), instructions
-    )
+    fault = Fault(kind, ids, (at, at), (duration, duration), share, amounts.get(kind), instructions)
     if rng.random() < 0.3:
         return fault, Fault(FaultKind.DROP, probability=0.01)
     return (fault,)
@@ -320,7 +317,9 @@ def run(seed: int, kinds: Sequence[FaultKind] = tuple(FaultKind)) -> Outcome:
     _outlive(clock, witness)
     wrong += witness.violations[:3]
     if witness.at_grace:
-        wrong.append(f"driven {GRACE} s after the loss at {witness.lost_at:.3f}: {witness.at_grace}")
+        wrong.append(
+            f"driven {GRACE} s after the loss at {witness.lost_at:.3f}: {witness.at_grace}"
+        )
     if left := witness.driven(clock.now()):
         wrong.append(f"driven at the end: {left}")
     if recording is not None:
