@@ -61,8 +61,8 @@ HEEL_HALF_BREADTH = 0.017
 FACET_LENGTH = 0.032
 FACET_ANGLE = 0.7854
 """rad between the sole and the second sole in front of it. A toe that bends would be a servo more
-a foot, and one on a spring would need 3.5 N m/rad to hold her: so the foot is rigid and has two flat
-soles, one to stand on and one for demi-pointe, on which she stands when the heel is 45 degrees
+a foot, and one on a spring would need 3.5 N m/rad to hold her: so the foot is rigid and has two
+flat soles, one to stand on and one for demi-pointe, which carries her when the heel is 45 degrees
 up."""
 SOLE_RADIUS = 0.004
 """Of the rubber studs at the soles' corners, m."""

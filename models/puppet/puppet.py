@@ -231,11 +231,14 @@ class _Leg(_Limb):
         radius = frame.SOLE_RADIUS
         bench.touching(foot, (-0.022, 0, sole + 0.014), (0.036, 0, sole + 0.014), 0.012)
         toe = foot.add_body(name=name("toe"), pos=(frame.BALL_FORWARD, 0, sole + radius))
-        rise = np.array([np.cos(frame.FACET_ANGLE), 0.0, np.sin(frame.FACET_ANGLE)])
+        angle = frame.FACET_ANGLE
+        rise = np.array([np.cos(angle), 0.0, np.sin(angle)])
+        tilted = (np.cos(0.5 * angle), 0.0, -np.sin(0.5 * angle), 0.0)
         half = 0.5 * frame.FACET_LENGTH * rise
-        bench.box(toe, name("toe_plate"), 0.015, half, (frame.FACET_LENGTH, 0.8 * breadth, 0.006),
-                  _SHOE, quat=(np.cos(0.5 * frame.FACET_ANGLE), 0, -np.sin(0.5 * frame.FACET_ANGLE), 0)
-                  )  # fmt: skip
+        bench.box(
+            toe, name("toe_plate"), 0.015, half, (frame.FACET_LENGTH, 0.8 * breadth, 0.006), _SHOE,
+            quat=tilted,
+        )  # fmt: skip
         tip = frame.FACET_LENGTH * rise
         bench.mark(toe, name("toe_tip"), tip)
         for edge, s in (("inner", -self.s), ("outer", self.s)):
