@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from enpointe.converting import convert as convert
     from enpointe.doctor import diagnose as diagnose
     from enpointe.errors import EnpointeError as EnpointeError
+    from enpointe.feasibility import Feasibility as Feasibility
+    from enpointe.feasibility import feasible as feasible
     from enpointe.notating import Notation as Notation
     from enpointe.notating import notate as notate
     from enpointe.notating import recognise as recognise
@@ -41,6 +43,7 @@ _HOMES = {
     "Comparison": "enpointe.comparing",
     "Conversion": "enpointe.converting",
     "EnpointeError": "enpointe.errors",
+    "Feasibility": "enpointe.feasibility",
     "Notation": "enpointe.notating",
     "Performance": "enpointe.performing",
     "Poses": "enpointe.posing",
@@ -48,6 +51,7 @@ _HOMES = {
     "compare": "enpointe.comparing",
     "convert": "enpointe.converting",
     "diagnose": "enpointe.doctor",
+    "feasible": "enpointe.feasibility",
     "load_score": "enpointe.notation",
     "notate": "enpointe.notating",
     "perform": "enpointe.performing",
@@ -63,6 +67,7 @@ __all__ = [
     "Comparison",
     "Conversion",
     "EnpointeError",
+    "Feasibility",
     "Notation",
     "Performance",
     "Poses",
@@ -72,6 +77,7 @@ __all__ = [
     "compare",
     "convert",
     "diagnose",
+    "feasible",
     "load_score",
     "notate",
     "perform",

@@ -13,7 +13,7 @@ from enpointe.hardware.emulator.motor import Motor
 from enpointe.hardware.hardware_error import HardwareError
 from enpointe.hardware.units import TENTH_VOLT
 
-__all__ = ["OVERLOAD_SECONDS", "HardwareError", "Protection"]
+__all__ = ["OVERLOAD_SECONDS", "OVERLOAD_SHARE", "HardwareError", "Protection"]
 
 OVERLOAD_SECONDS = 2.0
 """A load beyond `OVERLOAD_SHARE` for so long is an overload."""
