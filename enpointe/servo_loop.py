@@ -176,9 +176,7 @@ class _RemoteStop(StopButton):
                 self.press("the program that began the dance has gone")
 
 
-def _child(
-    pipe: Connection, rig: Rig, motion: Motion, port: str, patience: float | None
-) -> None:
+def _child(pipe: Connection, rig: Rig, motion: Motion, port: str, patience: float | None) -> None:
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.SIG_IGN)
     _make_punctual()

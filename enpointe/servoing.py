@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from enpointe.hardware.emulator import Fault
     from enpointe.hardware.rig_file import Rig
     from enpointe.motion import Motion
+    from enpointe.servo_loop import Danced
 
 __all__ = ["EMULATED", "MEMORY", "ServoPerformance", "body_of", "rig_motion", "servo"]
 
@@ -173,7 +174,13 @@ def servo(
     return ServoPerformance(chosen, port, motion, found.recording, found.statistics)
 
 
-def _in_memory(rig: Rig, motion: Motion, faults, seed, progress):  # type: ignore[no-untyped-def]
+def _in_memory(
+    rig: Rig,
+    motion: Motion,
+    faults: Sequence[Fault],
+    seed: int,
+    progress: Callable[[float, float], None],
+) -> Danced:
     from enpointe.hardware.dynamixel import Link, description_of
     from enpointe.hardware.emulator import EmulatedPort, FaultRun, VirtualClock, bus_of
     from enpointe.servo_loop import dance_on
@@ -216,9 +223,7 @@ def rig_motion(
     if is_stored(path):
         own = _own(path, model)
         return own if own is not None else by_name(load_stored(path), model)
-    dance = perform(
-        source, effort=effort, tempo=tempo, controller="kinematic", progress=progress
-    )
+    dance = perform(source, effort=effort, tempo=tempo, controller="kinematic", progress=progress)
     return by_name(dance.motion, model)
 
 

@@ -34,7 +34,7 @@ from enpointe.files import write_text
 from enpointe.hardware.datasheet import ServoModel, datasheet
 from enpointe.hardware.units import BAUD_RATES, CENTRE, PULSE, REVOLUTION
 
-__all__ = ["Rig", "RigServo", "load_rig", "rig_text", "save_rig", "shipped_rigs"]
+__all__ = ["Rig", "RigServo", "first_complaint", "load_rig", "rig_text", "save_rig", "shipped_rigs"]
 
 _FASTEST = 1000.0
 _GAIN = Annotated[int, Field(ge=0, le=16_383)]
@@ -185,11 +185,26 @@ class Rig(_Strict):
         """s of the control loop."""
         return 1.0 / self.rate
 
+    def at(self, baud: int | None = None, rate: float | None = None) -> Rig:
+        """The same rig at another baud rate or another rate of its loop, where one is given.
+
+        Raises:
+            RigError: There is none such.
+        """
+        changed = {"baud": self.baud if baud is None else baud,
+                   "rate": self.rate if rate is None else rate}  # fmt: skip
+        try:
+            return Rig.model_validate({**self.model_dump(by_alias=True), **changed})
+        except ValidationError as error:
+            raise RigError(first_complaint(error)) from None
+
 
 def shipped_rigs() -> tuple[str, ...]:
     """Names of the rigs that come with enpointe."""
     folder = files("enpointe.hardware") / "rigs"
-    return tuple(sorted(f.name.removesuffix(".toml") for f in folder.iterdir() if ".toml" in f.name))
+    return tuple(
+        sorted(f.name.removesuffix(".toml") for f in folder.iterdir() if ".toml" in f.name)
+    )
 
 
 def load_rig(source: str | Path) -> Rig:
@@ -216,10 +231,10 @@ def load_rig(source: str | Path) -> Rig:
     except tomllib.TOMLDecodeError as error:
         raise FormatError(f"no TOML: {error}", source) from error
     except ValidationError as error:
-        raise FormatError(_first(error), source) from error
+        raise FormatError(first_complaint(error), source) from error
 
 
-def _first(error: ValidationError) -> str:
+def first_complaint(error: ValidationError) -> str:
     """The first complaint in one line, with the servo's number counted from 1."""
     found = error.errors(include_url=False)[0]
     place = [f"servo {part + 1}" if isinstance(part, int) else part for part in found["loc"]]

@@ -1,4 +1,4 @@
-"""A rig of Dynamixel servos: the bus and its owner, codecs, checks, safety, and the body of it all."""
+"""A rig of Dynamixel servos: the bus and its owner, codecs, checks, safety, the body."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from enpointe.hardware.dynamixel.gate import CommandGate as CommandGate
     from enpointe.hardware.dynamixel.layout import Layout as Layout
     from enpointe.hardware.dynamixel.link import Link as Link
-    from enpointe.hardware.dynamixel.link import Lost as Lost
+    from enpointe.hardware.dynamixel.link import PortLostError as PortLostError
     from enpointe.hardware.dynamixel.pacing import Lateness as Lateness
     from enpointe.hardware.dynamixel.pacing import Pacer as Pacer
     from enpointe.hardware.dynamixel.ports import open_port as open_port
@@ -33,7 +33,7 @@ _HOMES = {
     "Lateness": "enpointe.hardware.dynamixel.pacing",
     "Layout": "enpointe.hardware.dynamixel.layout",
     "Link": "enpointe.hardware.dynamixel.link",
-    "Lost": "enpointe.hardware.dynamixel.link",
+    "PortLostError": "enpointe.hardware.dynamixel.link",
     "Pacer": "enpointe.hardware.dynamixel.pacing",
     "SafetyLimits": "enpointe.hardware.dynamixel.supervisor",
     "ServoRig": "enpointe.hardware.dynamixel.rig",
@@ -54,8 +54,8 @@ __all__ = [
     "Lateness",
     "Layout",
     "Link",
-    "Lost",
     "Pacer",
+    "PortLostError",
     "SafetyLimits",
     "ServoRig",
     "Severity",

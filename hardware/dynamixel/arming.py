@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from enpointe.errors import RigError
 from enpointe.hardware.clock import Clock
 from enpointe.hardware.control_table import Register
-from enpointe.hardware.dynamixel.link import Link, Lost
+from enpointe.hardware.dynamixel.link import Link, PortLostError
 from enpointe.hardware.rig_file import Rig, RigServo
 from enpointe.hardware.units import FULL_PWM, WATCHDOG
 
@@ -26,7 +26,7 @@ def set_verified(link: Link, register: Register, values: Sequence[tuple[int, int
 
     Raises:
         RigError: A servo does not say that it has the value, after three tries.
-        Lost: The port is gone.
+        PortLostError: The port is gone.
     """
     missing = list(values)
     for _ in range(_TRIES):
@@ -82,9 +82,7 @@ def _ram(servo: RigServo, period: float) -> dict[str, int]:
     return values
 
 
-def hold(
-    link: Link, registers: Mapping[str, Register], goals: Sequence[tuple[int, int]]
-) -> None:
+def hold(link: Link, registers: Mapping[str, Register], goals: Sequence[tuple[int, int]]) -> None:
     """Torque on, each servo where it stands.
 
     Args:
@@ -139,7 +137,7 @@ def cut_torque(
         try:
             link.sync_write(torque, [(servo, 0) for servo in ids])
             left = _unconfirmed(link, torque, left)
-        except Lost:
+        except PortLostError:
             break
         if not left or clock.now() >= end:
             break

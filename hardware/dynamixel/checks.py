@@ -88,7 +88,7 @@ def check_rig(rig: Rig, link: Link) -> list[Finding]:
         link: The bus that it is on.
 
     Raises:
-        Lost: The port is gone.
+        PortLostError: The port is gone.
     """
     found: list[Finding] = []
     for servo in rig.servos:
@@ -191,7 +191,9 @@ class _One:
 
     def _state(self) -> Iterator[Finding]:
         if errors := self._read("Hardware Error Status"):
-            names = ", ".join(bit.name.lower() for bit in HardwareError if errors & bit and bit.name)
+            names = ", ".join(
+                bit.name.lower() for bit in HardwareError if errors & bit and bit.name
+            )
             yield self._finding(
                 f"it has an alarm ({names or errors})", "find out why, then turn power off and on"
             )

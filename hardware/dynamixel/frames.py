@@ -80,7 +80,7 @@ class FrameReader:
         """Ask everybody once.
 
         Raises:
-            Lost: The port is gone.
+            PortLostError: The port is gone.
         """
         found = self._asked()
         now = self._clock.now()
@@ -95,9 +95,7 @@ class FrameReader:
             fresh[place] = True
         self._count(bool(fresh.all()))
         current, velocity, position = self._values.copy()
-        return Frame(
-            current, velocity, position, now - self._read_at, fresh, self._alert.copy()
-        )
+        return Frame(current, velocity, position, now - self._read_at, fresh, self._alert.copy())
 
     @property
     def loss(self) -> float:

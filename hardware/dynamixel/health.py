@@ -76,7 +76,7 @@ class Health:
             alert: (n,) whose sync answers say that they have an alarm.
 
         Raises:
-            Lost: The port is gone.
+            PortLostError: The port is gone.
         """
         alarmed = np.flatnonzero(alert)
         if len(alarmed):

@@ -21,7 +21,7 @@ from enpointe.errors import RigError
 from enpointe.hardware.control_table import Register
 from enpointe.hardware.packets import ALERT, HEADER, StatusError
 
-__all__ = ["PATIENCE", "Link", "LinkCounts", "Lost"]
+__all__ = ["PATIENCE", "Link", "LinkCounts", "PortLostError"]
 
 PATIENCE = 1.0
 """ms that an adapter holds bytes back, as the SDK's timeouts are told: its latency timer. What a
@@ -33,7 +33,7 @@ _ID, _ERROR, _STATUS = 4, 8, 11
 _GONE = "the serial port is gone: cut the servos' power, plug the adapter in and begin again"
 
 
-class Lost(RigError):
+class PortLostError(RigError):
     """The adapter is gone: what drives the rig catches it and reacts."""
 
 
@@ -74,14 +74,14 @@ class Link:
         if threading.get_ident() != self._owner:
             raise RigError("the bus has one owner: call it from the thread that opened it")
         if self.lost:
-            raise Lost(_GONE)
+            raise PortLostError(_GONE)
         # A module's constant is how the SDK is told; another port of this process has its own.
         port_handler.LATENCY_TIMER = self._patience
         try:
             yield
         except (serial.SerialException, OSError) as error:
             self.lost = True
-            raise Lost(f"{_GONE} ({' '.join(str(error).split())})") from error
+            raise PortLostError(f"{_GONE} ({' '.join(str(error).split())})") from error
         finally:
             self.port.is_using = False
 
@@ -135,8 +135,7 @@ class Link:
                     self.port, servo, register.address, register.size, list(data)
                 )
             if self._came(result, attempt):
-                code = int(error) & ~ALERT
-                return StatusError(code) if code in StatusError else StatusError.RESULT_FAIL
+                return _status(int(error) & ~ALERT)
         return None
 
     def reboot(self, servo: int) -> bool:
@@ -228,3 +227,10 @@ class Link:
                 "bytes to be written hold FF FF FD, which the dynamixel-sdk would send bare and"
                 " servos take for a header; write one register at a time"
             )
+
+
+def _status(code: int) -> StatusError:
+    try:
+        return StatusError(code)
+    except ValueError:
+        return StatusError.RESULT_FAIL

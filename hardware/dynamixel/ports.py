@@ -14,11 +14,9 @@ from dynamixel_sdk import PortHandler
 
 from enpointe.errors import RigError
 
-__all__ = ["PatientPort", "latency_timer", "open_port", "slow_adapter"]
+__all__ = ["PatientPort", "latency_timer", "open_port"]
 
 _SYSTEM = Path("/sys")
-_FAST = 1
-"""ms: what an adapter's latency timer should be."""
 
 
 class PatientPort(PortHandler):  # type: ignore[misc]  # the SDK ships no types
@@ -92,16 +90,3 @@ def latency_timer(name: str, system: Path = _SYSTEM) -> int | None:
         return int(file.read_text())
     except (OSError, ValueError):
         return None
-
-
-def slow_adapter(name: str, system: Path = _SYSTEM) -> str | None:
-    """What to do about an adapter that holds bytes back for too long, in one line; None if none."""
-    timer = latency_timer(name, system)
-    if timer is None or timer <= _FAST:
-        return None
-    device = Path(name).resolve().name
-    file = system / "bus" / "usb-serial" / "devices" / device / "latency_timer"
-    return (
-        f"the adapter of {name} holds bytes back for {timer} ms, which slows every read:"
-        f" echo {_FAST} | sudo tee {file}"
-    )

@@ -31,7 +31,7 @@ from enpointe.hardware.dynamixel.frames import Frame, FrameReader
 from enpointe.hardware.dynamixel.gate import CommandGate, Passed
 from enpointe.hardware.dynamixel.health import Health
 from enpointe.hardware.dynamixel.layout import Layout
-from enpointe.hardware.dynamixel.link import Link, Lost
+from enpointe.hardware.dynamixel.link import Link, PortLostError
 from enpointe.hardware.dynamixel.pacing import Lateness, Pacer
 from enpointe.hardware.dynamixel.registers import common
 from enpointe.hardware.dynamixel.stopping import StopButton
@@ -207,7 +207,7 @@ class ServoRig:
         self._close_statistics()
         parked = self._home is not None and self._go(self._home, Severity.PARK)
         self._let_go()
-        if parked and self.ending is Ending.OFF:
+        if parked and not self.unconfirmed:
             self.ending = Ending.PARKED
 
     def __enter__(self) -> ServoRig:
@@ -246,7 +246,7 @@ class ServoRig:
         """
         try:
             verdict = self._exchange(wanted)
-        except Lost as error:
+        except PortLostError as error:
             verdict = Verdict(Severity.OFF, str(error))
         verdict = max(verdict, self._wish(), key=lambda each: each.severity)
         if verdict.severity > accept:
@@ -271,7 +271,9 @@ class ServoRig:
         error = self._codec.angle(before) - self._codec.angle(self._frame.position)
         verdict = self._supervisor.look(self._frame, self._health, error, self.clock.now())
         if stood >= self._limits.watchdog:
-            why = f"the loop stood still for {stood:.2f} s and the servos have stopped by themselves"
+            why = (
+                f"the loop stood still for {stood:.2f} s and the servos have stopped by themselves"
+            )
             verdict = Verdict(Severity.OFF, f"{why}; leave the computer more time")
         if self._passed.refused and verdict.severity is Severity.FINE:
             verdict = Verdict(Severity.PARK, "the controller asked for what is no number")
@@ -296,7 +298,9 @@ class ServoRig:
         """A smooth, slow way to a pose; whether it was reached."""
         begin = self._codec.angle(self._gate.goal)
         longest = float(np.abs(target - begin).max())
-        slowest = min(self._limits.ramp_speed, float(min(servo.top_speed for servo in self.rig.servos)))
+        slowest = min(
+            self._limits.ramp_speed, float(min(servo.top_speed for servo in self.rig.servos))
+        )
         duration = max(self._limits.ramp, longest * math.pi / 2.0 / slowest)
         start = self.clock.now()
         while self.ending is Ending.RUNNING:

@@ -132,7 +132,9 @@ class Supervisor:
             words = ", ".join(text for bit, text in _WORDS.items() if errors & bit)
             grave = bool(errors & ~_HARMLESS)
             what = f"servo {self._names[place]} has an alarm: {words or f'error {int(errors)}'}"
-            todo = "let it cool, free what holds it, and reboot it" if grave else "charge or mend it"
+            todo = (
+                "let it cool, free what holds it, and reboot it" if grave else "charge or mend it"
+            )
             yield Verdict(Severity.OFF if grave else Severity.PARK, f"{what}; {todo}")
 
     def _silence(self, frame: Frame) -> Iterator[Verdict]:
@@ -160,7 +162,10 @@ class Supervisor:
 
     def _loss(self) -> Iterator[Verdict]:
         losses = self._losses
-        if len(losses) == losses.maxlen and (share := sum(losses) / len(losses)) > self._limits.loss:
+        if (
+            len(losses) == losses.maxlen
+            and (share := sum(losses) / len(losses)) > self._limits.loss
+        ):
             yield Verdict(
                 Severity.PARK,
                 f"{share:.0%} of the answers are lost; look at cables, or choose a lower baud rate",

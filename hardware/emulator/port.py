@@ -9,8 +9,8 @@ from __future__ import annotations
 import serial
 from dynamixel_sdk import PortHandler
 
-from enpointe.hardware.emulator.bus import Bus
 from enpointe.hardware.clock import VirtualClock
+from enpointe.hardware.emulator.bus import Bus
 
 __all__ = ["EmulatedPort"]
 
