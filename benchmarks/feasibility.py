@@ -1,5 +1,6 @@
 """Grand battement at its tempo on a rig: what limits, the time that is enough, and the run in it.
 
+Where limbs collide, no time is enough: then it runs in the time that the servos alone would need.
 The rig's body hangs on a stand in MuJoCo behind the emulated bus; the rig's own loop drives it
 through the real dynamixel-sdk, as written and in the time that is enough.
 """
@@ -23,6 +24,8 @@ from enpointe.models.puppet import op3_spec, puppet_spec
 from enpointe.motion import Motion
 from enpointe.motion.joint_timing import TimingKept, timing_kept
 from enpointe.motion.puppeteering import puppeteer
+from enpointe.motion.slowing import slowed
+from enpointe.report.bodies import write_bodies
 from enpointe.report.feasibility import write_feasibility
 from enpointe.servo_loop import dance_on
 from enpointe.servoing import body_of
@@ -91,8 +94,9 @@ def _actuated(motion: Motion) -> list[str]:
 def told(found: Feasibility) -> dict[str, object]:
     """What is short of a verdict."""
     figures = found.summary()
-    kept = ("feasible", "time_scale", "time_scale_of_servos", "reasons")
-    return {name: figures[name] for name in kept}
+    kept = ("feasible", "time_scale", "time_scale_of_servos")
+    because = [line for what, line in found.lines() if what == "because"]
+    return {**{name: figures[name] for name in kept}, "because": because}
 
 
 def effort(timing: TimingKept) -> dict[str, object]:
@@ -112,7 +116,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--score", default="grand-battement")
     parser.add_argument("--rig", default="op3")
-    parser.add_argument("--out", type=Path, default=None, help="for the page")
+    parser.add_argument("--out", type=Path, default=None, help="for the pages")
     parser.add_argument("--json", action="store_true")
     asked = parser.parse_args()
     rig = load_rig(asked.rig)
@@ -128,11 +132,22 @@ def main() -> None:
         "as_written": run(rig, made.motion)[1],
     }
     timing = None
-    if hung.time_scale is not None:
-        recording, in_time = run(rig, hung.slowed)
+    scale = hung.time_scale or hung.assessment.servo_scale
+    if scale is not None:
+        slow = slowed(made.motion, scale)
+        recording, in_time = run(rig, slow)
         moving = [joint for joint in rig.joints if np.ptp(_angles(made.motion, joint)) > 0.3]
-        timing = timing_kept(hung.slowed, recording.as_motion(), moving)
+        timing = timing_kept(slow, recording.as_motion(), moving)
         figures |= {"in_the_time_that_is_enough": in_time, "effort": effort(timing)}
+        if asked.out is not None:
+            write_bodies(
+                {
+                    "dancer": slowed(dance.motion, scale),
+                    rig.name: slow,
+                    "its servos": recording.as_motion(),
+                },
+                asked.out,
+            )
     if asked.out is not None:
         write_feasibility(hung, asked.out, timing=timing)
     if asked.json:
@@ -141,7 +156,7 @@ def main() -> None:
     for name, value in figures.items():
         rows = value.items() if isinstance(value, dict) else [("", value)]
         for what, figure in rows:
-            lines = figure if isinstance(figure, list) and what == "reasons" else [figure]
+            lines = figure if isinstance(figure, list) and what == "because" else [figure]
             for line in lines:
                 print(f"{name:28} {what:22} {line}")
 
