@@ -86,7 +86,7 @@ def test_no_rig_of_that_name_says_which_there_are() -> None:
 
 @settings(max_examples=30)
 @given(
-    st.text(min_size=1, max_size=20).filter(lambda name: "\ud800" > max(name)),
+    st.text(min_size=1, max_size=20).filter(lambda name: max(name) < "\ud800"),
     st.floats(-90.0, 90.0),
     st.sampled_from([-1, 1]),
 )
