@@ -249,7 +249,7 @@ class Outcome:
         ending: How the driver says that the servos were left; "refused" if it did not begin.
         reason: The line it gave.
         completed: Whether it danced to the end.
-        rest: s from the loss to rest; None if there was no loss.
+        lost: Whether the fault could no longer be danced away.
         wrong: What must not be, in words.
     """
 
@@ -373,6 +373,8 @@ def main() -> int:
         outcomes.append(run(seed))
         if outcomes[-1].wrong:
             print(f"seed {seed}: {outcomes[-1]}", file=sys.stderr)
+        if sys.stderr.isatty():
+            print(f"\r{len(outcomes)} of {options.runs}", end="", file=sys.stderr)
     if options.json:
         print(json.dumps([asdict(outcome) for outcome in outcomes]))
     else:

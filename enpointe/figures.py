@@ -215,6 +215,9 @@ class ServoFigures(TypedDict):
     """A dance of servos."""
 
     title: str
+    feasible: bool | None
+    time_scale: float | None
+    limiting_joints: list[str] | None
     rig: str
     port: str
     completed: bool

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from enpointe.console import Console
+from enpointe.console import Console, rows
 from enpointe.errors import RigError
 from enpointe.options import Effort, Json, OutputOptions, Quiet, SpeechOptions, Tempo, unbundled
+
+if TYPE_CHECKING:
+    from enpointe.feasibility import Feasibility
 
 __all__ = ["servo_verbs"]
 
@@ -42,6 +45,15 @@ def servo(
     tempo: Tempo = None,
     baud: Annotated[int | None, typer.Option(help="bit/s; the rig file's if left out.")] = None,
     rate: Annotated[float | None, typer.Option(help="Hz; the rig file's if left out.")] = None,
+    stand: Annotated[
+        bool, typer.Option("--stand/--free", help="The puppet hangs on a stand, or must balance.")
+    ] = True,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Say whether the rig can dance it, and do no more.")
+    ] = False,
+    as_written: Annotated[
+        bool, typer.Option("--as-written", help="Don't slow down what servos can't follow.")
+    ] = False,
     faults: Annotated[
         Path | None, typer.Option(help="What goes wrong on an emulated bus, in TOML.")
     ] = None,
@@ -51,10 +63,13 @@ def servo(
     from enpointe.hardware.emulator import load_faults
     from enpointe.hardware.rig_file import load_rig
     from enpointe.servoing import servo as dance
+    from enpointe.servoing import would
 
     console = output.console()
     chosen = load_rig(rig).at(baud, rate)
     script = () if faults is None else load_faults(faults)
+    if dry_run:
+        return _say(console, would(source, chosen, effort=effort, tempo=tempo, stand=stand), output)
     with console.progress() as progress:
         danced = dance(
             source,
@@ -62,6 +77,8 @@ def servo(
             port=port,
             effort=effort,
             tempo=tempo,
+            stand=stand,
+            as_written=as_written,
             faults=script,
             seed=output.seed,
             progress=progress,
@@ -71,6 +88,14 @@ def servo(
     for fault in danced.statistics.faults:
         console.warn(fault)
     return 0 if danced.completed else 1
+
+
+def _say(console: Console, found: Feasibility, output: OutputOptions) -> int:
+    if output.json:
+        console.print_json(found.summary())
+    else:
+        console.print(rows(found.lines()))
+    return 0 if found.feasible else 1
 
 
 @servo_verbs.command("calibrate")

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from enpointe.errors import RigError
+from enpointe.feasibility import Feasibility, feasible
 from enpointe.figures import ServoFigures
 from enpointe.preparing import Progress, silent
 
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from enpointe.motion import Motion
     from enpointe.servo_loop import Danced
 
-__all__ = ["EMULATED", "MEMORY", "ServoPerformance", "body_of", "rig_motion", "servo"]
+__all__ = ["EMULATED", "MEMORY", "ServoPerformance", "body_of", "rig_motion", "servo", "would"]
 
 EMULATED, MEMORY = "emulated", "memory"
 """Ports that are none: a bus in a process of its own behind a pseudo-terminal, and one in memory
@@ -41,9 +42,10 @@ class ServoPerformance:
     Attributes:
         rig: The servos.
         port: Where they were.
-        motion: What was to be danced, of the rig's body.
+        motion: What was to be danced, of the rig's body, slowed if it had to be.
         recording: What happened.
         statistics: Of loop, bus and ending.
+        feasibility: Whether the rig can dance it as written; None if that was not asked.
     """
 
     rig: Rig
@@ -51,6 +53,7 @@ class ServoPerformance:
     motion: Motion
     recording: Recording
     statistics: Statistics
+    feasibility: Feasibility | None = None
 
     @property
     def completed(self) -> bool:
@@ -93,8 +96,12 @@ class ServoPerformance:
         late, rig = self.statistics.lateness, self.rig
         squares = self.tracking_error**2
         overall = float(np.degrees(np.sqrt(np.nanmean(squares)))) if squares.size else float("nan")
+        found = self.feasibility
         return {
             "title": self.motion.name,
+            "feasible": None if found is None else found.feasible,
+            "time_scale": None if found is None else found.time_scale,
+            "limiting_joints": None if found is None else list(found.limiting_joints),
             "rig": rig.name,
             "port": self.port,
             "completed": self.completed,
@@ -127,6 +134,8 @@ def servo(
     port: str = EMULATED,
     effort: str | None = None,
     tempo: float | None = None,
+    stand: bool = True,
+    as_written: bool = False,
     faults: Sequence[Fault] = (),
     seed: int = 0,
     progress: Progress = silent,
@@ -140,6 +149,8 @@ def servo(
         port: A serial port; "emulated" or "memory" for a bus that is not there.
         effort: See `perform`.
         tempo: See `perform`.
+        stand: Whether the body hangs on a stand, and need not balance; see `feasible`.
+        as_written: Dance it even if the servos can't follow, and no slower than it is written.
         faults: What goes wrong on an emulated bus.
         seed: Of the faults.
         progress: Told how far it is.
@@ -148,7 +159,8 @@ def servo(
         The dance, up to the fault if there was one; `ServoPerformance.summary` has its figures.
 
     Raises:
-        EnpointeError: The rig can't begin, or anything else that the caller can mend.
+        EnpointeError: The rig can't begin, no time is enough for the movement, or anything else
+            that the caller can mend.
     """
     from enpointe.hardware.rig_file import Rig, load_rig
 
@@ -156,6 +168,10 @@ def servo(
     if faults and port not in (EMULATED, MEMORY):
         raise RigError(f"faults happen on an emulated bus; {port} has its own")
     motion = rig_motion(source, chosen, effort=effort, tempo=tempo, progress=progress)
+    feasibility = None
+    if not as_written:
+        feasibility = feasible(motion, chosen, stand=stand, progress=progress)
+        motion = feasibility.slowed
     from enpointe.servo_loop import dance_in_own_process
 
     def danced(done: float, total: float) -> None:
@@ -171,7 +187,22 @@ def servo(
             found = dance_in_own_process(chosen, motion, path, patience=_PATIENCE, progress=danced)
     else:
         found = dance_in_own_process(chosen, motion, port, progress=danced)
-    return ServoPerformance(chosen, port, motion, found.recording, found.statistics)
+    done = found.recording, found.statistics
+    return ServoPerformance(chosen, port, motion, *done, feasibility)
+
+
+def would(
+    source: str | Path,
+    rig: Rig,
+    *,
+    effort: str | None = None,
+    tempo: float | None = None,
+    stand: bool = True,
+    progress: Progress = silent,
+) -> Feasibility:
+    """Whether a rig can dance something, and nothing is danced; see `servo`."""
+    motion = rig_motion(source, rig, effort=effort, tempo=tempo, progress=progress)
+    return feasible(motion, rig, stand=stand, progress=progress)
 
 
 def _in_memory(
@@ -222,9 +253,19 @@ def rig_motion(
     path, model = Path(source), body_of(rig)
     if is_stored(path):
         own = _own(path, model)
-        return own if own is not None else by_name(load_stored(path), model)
-    dance = perform(source, effort=effort, tempo=tempo, controller="kinematic", progress=progress)
-    return by_name(dance.motion, model)
+        if own is not None:
+            return own
+        danced = load_stored(path)
+    else:
+        danced = perform(
+            source, effort=effort, tempo=tempo, controller="kinematic", progress=progress
+        ).motion
+    from enpointe.motion.puppeteering import puppeteer
+
+    def posed(done: int, total: int) -> None:
+        progress("puppet", done, total)
+
+    return puppeteer(danced, model, progress=posed).motion
 
 
 def _own(path: Path, model: mujoco.MjModel) -> Motion | None:
@@ -239,31 +280,3 @@ def _own(path: Path, model: mujoco.MjModel) -> Motion | None:
         return Recording.load(path, model).as_motion()
     except FormatError:
         return None
-
-
-def by_name(motion: Motion, model: mujoco.MjModel) -> Motion:
-    """A movement on another body, joints of the same name at the same angles within its ranges.
-
-    Raises:
-        RigError: The two bodies share no joint.
-    """
-    import mujoco
-
-    from enpointe.motion import Motion
-
-    theirs = motion.model
-    qpos = np.tile(model.key("standing").qpos, (len(motion.time), 1))
-    shared = 0
-    for joint in range(model.njnt):
-        if model.jnt_type[joint] != mujoco.mjtJoint.mjJNT_HINGE:
-            continue
-        found = mujoco.mj_name2id(theirs, mujoco.mjtObj.mjOBJ_JOINT, model.joint(joint).name)
-        if found < 0:
-            continue
-        shared += 1
-        low, high = model.jnt_range[joint]
-        angles = motion.qpos[:, theirs.jnt_qposadr[found]]
-        qpos[:, model.jnt_qposadr[joint]] = np.clip(angles, low, high)
-    if not shared:
-        raise RigError(f"{motion.name} is of a body that shares no joint with the rig's")
-    return Motion.from_qpos(model, motion.time, qpos, events=motion.events, name=motion.name)

@@ -92,6 +92,7 @@ class CommandGate:
             raise RigError(f"{len(self._exact)} goals are needed, and {wanted.shape} came")
         none = np.zeros(len(wanted), dtype=bool)
         if not np.all(np.isfinite(wanted)):
+            self._time = time
             return Passed(self.goal, none, none, refused=True)
         inside = np.clip(wanted, self._low, self._high)
         step = self._speed * min(max(time - self._time, 0.0), self._period)
