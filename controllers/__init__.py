@@ -10,4 +10,5 @@ from enpointe.controllers.protocol import Command as Command
 from enpointe.controllers.protocol import Controller as Controller
 from enpointe.controllers.protocol import State as State
 from enpointe.controllers.recording import Recording as Recording
+from enpointe.controllers.springs import Springs as Springs
 from enpointe.controllers.wholebody import WholeBody as WholeBody

@@ -1,9 +1,9 @@
 """Where the feet of another body stand when it dances what a dancer danced.
 
 Each stretch of standing has one footprint: the dancer's, on the body's scale. A body of servos has
-feet that are large for its size; a footprint that would lie in that of the other foot is moved out of
-it by the shortest way. A heel rises in proportion to the dancer's, so that at her highest the foot
-stands on its second sole, and stays down if there is none.
+feet that are large for its size; a footprint that would lie in that of the other foot is moved out
+of it by the shortest way. A heel rises in proportion to the dancer's, so that at her highest the
+foot stands on its second sole, and stays down if there is none.
 """
 
 from __future__ import annotations

@@ -1,11 +1,12 @@
 """A dancer's movement on a body of servos: other limbs, fewer joints, feet that do not bend.
 
-Directions are carried over, not angles: of upper arms and forearms, thighs and shanks, pelvis, trunk
-and head. What stands on the floor keeps standing, on a mark of the body's own size; where two feet
-would be in each other's way there, the one that comes later stands beside the other. Heels rise as
-far as the foot has a second sole to stand on (`Sole.rise`), and not at all if it has none. Every
-sample is posed by differential inverse kinematics (mink) within the joints' ranges; joints that both
-bodies have by one name follow the dancer's angles where nothing else asks.
+Directions are carried over, not angles: of upper arms and forearms, thighs and shanks, pelvis,
+trunk and head. What stands on the floor keeps standing, on a mark of the body's own size; where two
+feet would be in each other's way there, the one that comes later stands beside the other. Heels
+rise as far as the foot has a second sole to stand on (`Sole.rise`), and not at all if it has none.
+Every sample is posed by differential inverse kinematics (mink) within the joints' ranges; joints
+that both bodies have by one name follow the dancer's angles where nothing else asks. Then the
+weight is planned (`plan_weight`), and every sample posed again with its centre of mass there.
 
 What is lost: joints that the body has not, of the puppet waist tilt, forearm, wrist, ankle turn and
 toe; of OP3 also the waist, a shoulder and neck axis each, and demi-pointe.
@@ -31,6 +32,7 @@ from enpointe.motion.motion import Motion
 from enpointe.motion.retargeting.body import Body
 from enpointe.motion.retargeting.landmarks import sided
 from enpointe.motion.retargeting.posing import Directions
+from enpointe.motion.weight_plan import WeightPlan, plan_weight
 
 __all__ = ["Puppeteered", "puppeteer"]
 
@@ -41,8 +43,11 @@ _DT = 1.0
 _FIRST, _EACH = 60, 3
 _PELVIS, _TORSO, _HEAD = 2.0, 1.5, 0.7
 _ROOT = 4.0
+_ROOT_BALANCED = (0.2, 0.2, 4.0)
+_WEIGHT = (20.0, 20.0, 0.0)
 _PLANTED, _FREE = 60.0, 1.5
 _LAID, _LOOSE = 6.0, 0.25
+_BRUSH, _OVER_FLOOR = 0.004, 15.0
 _SHARED, _POSTURE = 0.12, 0.02
 _STEADY = 0.12
 _TOUCHES = 0.002
@@ -58,11 +63,13 @@ class Puppeteered:
     Attributes:
         motion: On that body.
         contacts: Which soles bear, and when.
+        weight: Where its centre of mass was planned to be; None if it was not.
         scale: Length of its legs over the dancer's.
     """
 
     motion: Motion
     contacts: ContactSchedule
+    weight: WeightPlan | None
     scale: float
 
 
@@ -70,17 +77,17 @@ def puppeteer(
     motion: Motion,
     model: mujoco.MjModel,
     *,
+    balanced: bool = True,
     progress: Callable[[int, int], None] | None = None,
 ) -> Puppeteered:
     """Put a dancer's movement on a body of servos.
-
-    The movement is kinematic: `enpointe.motion.danceable.make_danceable` moves its weight over the
-    feet, with the contacts found here.
 
     Args:
         motion: Of the dancer.
         model: Such as `enpointe.models.puppet.puppet_model()`: parts and points have the dancer's
             names.
+        balanced: Bring its weight over its feet; without, it moves as the dancer did, who weighs
+            otherwise.
         progress: Called with (done, all) now and then.
 
     Raises:
@@ -101,10 +108,19 @@ def puppeteer(
         for side in SIDES
     }
     feet = footings(source.feet, standing, body, scale, RATE)
-    qpos = _Poser(source, body, scale, feet).pose_all(progress)
-    smooth = averaged_qpos(qpos, _KINKS, RATE)
-    made = Motion.from_qpos(model, time, smooth, events=motion.events, name=motion.name)
-    return Puppeteered(made, _contacts(made, body, feet), scale)
+    poser = _Poser(source, body, scale, feet)
+
+    def pose(weight: WeightPlan | None) -> tuple[Motion, ContactSchedule]:
+        qpos = averaged_qpos(poser.pose_all(weight, progress), _KINKS, RATE)
+        made = Motion.from_qpos(model, time, qpos, events=motion.events, name=motion.name)
+        return made, _contacts(made, body, feet)
+
+    weight = None
+    made, contacts = pose(None)
+    if balanced:
+        weight = plan_weight(made, contacts, made)
+        made, contacts = pose(weight)
+    return Puppeteered(made, contacts, weight, scale)
 
 
 class _Source:
@@ -161,9 +177,9 @@ class _Poser:
             for part, cost in (("pelvis", _PELVIS), ("torso", _TORSO), ("head", _HEAD))
         }
         self._pelvis = self._turned["pelvis"]
-        self._pelvis.set_position_cost(_ROOT)
         self._soles = {s: mink.FrameTask(f"{s}_foot", "body", _FREE, _LOOSE) for s in SIDES}
         self._posture = mink.PostureTask(model, cost=self._posture_cost())
+        self._com = mink.ComTask(_WEIGHT)
         steady = mink.DampingTask(model, cost=np.full(model.nv, _STEADY))
         self._tasks = [
             self._directions, *self._turned.values(), *self._soles.values(), self._posture, steady,
@@ -172,21 +188,34 @@ class _Poser:
         data = mujoco.MjData(model)
         data.qpos[:] = body.rest
         mujoco.mj_kinematics(model, data)
+        geoms = sole_geoms(model)
+        self._radius = float(model.geom_size[geoms[0], 0])
+        self._studs = {}
+        for side in SIDES:
+            mine = [body.bodies[f"{side}_{part}"] for part in ("foot", "toe")]
+            places = data.geom_xpos[geoms[np.isin(model.geom_bodyid[geoms], mine)]]
+            self._studs[side] = places - data.xpos[body.bodies[f"{side}_foot"]]
         self._foot_from_ankle = {
             s: data.xpos[body.bodies[f"{s}_foot"]] - data.site(f"{s}_ankle").xpos for s in SIDES
         }
 
-    def pose_all(self, progress: Callable[[int, int], None] | None) -> Array:
+    def pose_all(
+        self, weight: WeightPlan | None, progress: Callable[[int, int], None] | None
+    ) -> Array:
         model = self._body.model
+        self._pelvis.set_position_cost(_ROOT if weight is None else _ROOT_BALANCED)
+        tasks = self._tasks if weight is None else [*self._tasks, self._com]
         configuration = mink.Configuration(model, q=self._body.rest)
         limits = [mink.ConfigurationLimit(model, gain=1.0)]
         qpos = np.empty((self._source.count, model.nq))
         for i, row in enumerate(qpos):
             self._ask(i)
+            if weight is not None:
+                self._com.set_target(weight.at(i / RATE)[0])
             if i == 0:
                 configuration.update(self._pose)
             for _ in range(_EACH if i else _FIRST):
-                step = mink.solve_ik(configuration, self._tasks, _DT, "daqp", 1e-6, limits=limits)
+                step = mink.solve_ik(configuration, tasks, _DT, "daqp", 1e-6, limits=limits)
                 configuration.integrate_inplace(step, _DT)
             row[:] = configuration.q
             if i and row[3:7] @ qpos[i - 1, 3:7] < 0:
@@ -223,7 +252,10 @@ class _Poser:
                 way = (free.inv() * Rotation.from_matrix(rotation)).as_rotvec()
                 rotation = (free * Rotation.from_rotvec(laid * way)).as_matrix()
             origin = ankle + rotation @ self._foot_from_ankle[side]
-            task.set_position_cost(_FREE + laid**4 * (_PLANTED - _FREE))
+            lowest = float((origin + self._studs[side] @ rotation.T)[:, 2].min()) - self._radius
+            origin[2] += max((1.0 - laid) * _BRUSH - lowest, 0.0)
+            level = _FREE + laid**4 * (_PLANTED - _FREE)
+            task.set_position_cost((level, level, max(level, _OVER_FLOOR)))
             task.set_orientation_cost(_LOOSE + laid**4 * (_LAID - _LOOSE))
             task.set_target(
                 mink.SE3.from_rotation_and_translation(mink.SO3.from_matrix(rotation), origin)
