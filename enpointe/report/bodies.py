@@ -51,7 +51,10 @@ def write_bodies(
         sections.append(Section("joints", "What was asked and what was done", same))
     files = {}
     if reel is not None:
-        caption = "At the same moments; each at the size of the picture."
+        caption = (
+            "At the same moments; each at the size of the picture. A rig does not feel where its "
+            "trunk is: it is shown with the trunk where it began."
+        )
         block = Film(data_uri(reel.mime, reel.data), reel.mime, reel.size, "The bodies", caption)
         sections.insert(0, Section("film", "Side by side", (block,)))
         files["video"] = write_bytes(out / reel.name, reel.data)
