@@ -67,7 +67,7 @@ wheel-venv: wheel
 
 wheel-tools: wheel-venv
 	$(WHEEL_VENV)/bin/python -m pip install --quiet --constraint $(WHEEL_VENV)/pins.txt \
-		"$$(ls dist/*.whl)[dev,video,cluster]"
+		"$$(ls dist/*.whl)[dev,video,cluster,ros]"
 
 types: wheel-tools
 	cd $(WHEEL_VENV) && bin/mypy --config-file $(CURDIR)/pyproject.toml -p enpointe
@@ -83,10 +83,10 @@ lock: $(VENV)/.dependencies
 	$(BIN)/python -m venv $(VENV)/lock
 	$(VENV)/lock/bin/python -m pip install --quiet uv
 	$(VENV)/lock/bin/uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest --upgrade \
-		--generate-hashes --no-annotate --no-emit-index-url --extra video --extra cluster --extra dev \
+		--generate-hashes --no-annotate --no-emit-index-url --extra video --extra cluster --extra ros --extra dev \
 		--custom-compile-command "make lock" --output-file constraints.txt pyproject.toml
 	$(VENV)/lock/bin/uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest --upgrade \
-		--resolution lowest-direct --only-binary :all: --no-annotate --no-emit-index-url --extra video --extra cluster \
+		--resolution lowest-direct --only-binary :all: --no-annotate --no-emit-index-url --extra video --extra cluster --extra ros \
 		--custom-compile-command "make lock" --output-file constraints-floors.txt pyproject.toml
 	rm -rf $(VENV)/lock
 
@@ -96,7 +96,7 @@ floors: wheel
 	$(PYTHON) -m venv $(VENV)/floors
 	$(VENV)/floors/bin/python -m pip install --quiet --only-binary :all: -r constraints-floors.txt
 	$(VENV)/floors/bin/python -m pip install --quiet --constraint constraints-floors.txt \
-		"$$(ls dist/*.whl)[dev,video,cluster]"
+		"$$(ls dist/*.whl)[dev,video,cluster,ros]"
 	$(VENV)/floors/bin/pytest -n 2 $(PYTEST_ARGS)
 
 clean:

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from enpointe.converting import convert as convert
     from enpointe.doctor import diagnose as diagnose
     from enpointe.errors import EnpointeError as EnpointeError
+    from enpointe.feasibility import Feasibility as Feasibility
+    from enpointe.feasibility import feasible as feasible
     from enpointe.notating import Notation as Notation
     from enpointe.notating import notate as notate
     from enpointe.notating import recognise as recognise
@@ -44,6 +46,7 @@ _HOMES = {
     "Conversion": "enpointe.converting",
     "EnpointeError": "enpointe.errors",
     "FilePerformance": "enpointe.performing_file",
+    "Feasibility": "enpointe.feasibility",
     "Notation": "enpointe.notating",
     "Performance": "enpointe.performing",
     "Poses": "enpointe.posing",
@@ -51,6 +54,7 @@ _HOMES = {
     "compare": "enpointe.comparing",
     "convert": "enpointe.converting",
     "diagnose": "enpointe.doctor",
+    "feasible": "enpointe.feasibility",
     "load_score": "enpointe.notation",
     "notate": "enpointe.notating",
     "perform": "enpointe.performing",
@@ -67,6 +71,7 @@ __all__ = [
     "Comparison",
     "Conversion",
     "EnpointeError",
+    "Feasibility",
     "FilePerformance",
     "Notation",
     "Performance",
@@ -77,6 +82,7 @@ __all__ = [
     "compare",
     "convert",
     "diagnose",
+    "feasible",
     "load_score",
     "notate",
     "perform",

@@ -11,7 +11,7 @@ from typing import Annotated
 import typer
 
 import enpointe
-from enpointe.console import Console, rows
+from enpointe.console import rows
 from enpointe.errors import EnpointeError
 from enpointe.options import (
     BAD_INPUT,
@@ -21,9 +21,7 @@ from enpointe.options import (
     ConversionOptions,
     DancerOptions,
     Effort,
-    Json,
     OutputOptions,
-    Quiet,
     Score,
     SeededOutputOptions,
     SpeechOptions,
@@ -287,23 +285,6 @@ def sweep(
         files = {**write_sweep(swept, folder, mapped), **swept.save(folder)}
     console.show(swept.summary(), files, folder)
     return DONE if swept.completed_fraction >= at_least else NO
-
-
-@app.command()
-def doctor(
-    json: Json = False,
-    quiet: Quiet = False,
-) -> int:
-    """Say what this machine can do: OpenGL, encoder, serial ports, versions."""
-    from enpointe.doctor import as_table, examine
-
-    console = Console(json=json, quiet=quiet)
-    diagnosis = examine()
-    if json:
-        console.print_json(enpointe.diagnose())
-    else:
-        console.print(as_table(diagnosis))
-    return DONE
 
 
 def main() -> None:

@@ -31,6 +31,7 @@ __all__ = [
     "as_table",
     "diagnose",
     "examine",
+    "examine_rig",
 ]
 
 THREAD_VARIABLES = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
@@ -159,8 +160,32 @@ def examine() -> Diagnosis:
     return Diagnosis(versions, opengl, encoder, ports, machine, tuple(advice))
 
 
-def as_table(diagnosis: Diagnosis) -> RenderableType:
-    """Dresses a diagnosis for a terminal, by rich."""
+def examine_rig(rig: str, port: str) -> list[str]:
+    """What keeps a rig from moving: the checks that come before every dance, and nothing moves.
+
+    Args:
+        rig: A shipped rig's name, or a TOML file.
+        port: The serial port that it is on.
+
+    Returns:
+        One line for each finding, with what to do about it.
+
+    Raises:
+        EnpointeError: There is no such rig or port.
+    """
+    from enpointe.hardware.dynamixel import Link, check_rig, open_port
+    from enpointe.hardware.rig_file import load_rig
+
+    described = load_rig(rig)
+    link = Link(open_port(port, described.baud))
+    try:
+        return [str(finding) for finding in check_rig(described, link)]
+    finally:
+        link.close()
+
+
+def as_table(diagnosis: Diagnosis, findings: list[str] | None = None) -> RenderableType:
+    """Dresses a diagnosis for a terminal, by rich; and what was found of a rig, if it was asked."""
     software = Table("software", "here", "needs", title_justify="left")
     for version in diagnosis.versions:
         found = version.found or ("missing" if version.needed else "not installed (extra)")
@@ -183,7 +208,10 @@ def as_table(diagnosis: Diagnosis) -> RenderableType:
         abilities.add_row("serial port", Text(f"{port.device} {port.description}{latency}"))
     if not diagnosis.ports:
         abilities.add_row("serial port", "none")
-    return Group(software, abilities, *(Text(line) for line in diagnosis.advice))
+    if findings is not None:
+        abilities.add_row("rig", f"{len(findings)} findings" if findings else "ready")
+    advice = (*diagnosis.advice, *(findings or ()))
+    return Group(software, abilities, *(Text(line) for line in advice))
 
 
 def _versions() -> Iterator[Version]:

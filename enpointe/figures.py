@@ -16,12 +16,14 @@ __all__ = [
     "FitFigures",
     "FlightFigures",
     "KinematicFigures",
+    "LatenessFigures",
     "PerformanceFigures",
     "PhysicalFigures",
     "PoseFigures",
     "PosesFigures",
     "RuleFigures",
     "RuleKeptFigures",
+    "ServoFigures",
     "StretchFigures",
     "SweepFailure",
     "SweepFigures",
@@ -234,3 +236,35 @@ class FilePerformanceFigures(PhysicalFigures):
     fell_at_in_file: float | None
     fell_at_frame: int | None
     warnings: list[str]
+
+
+class LatenessFigures(TypedDict):
+    """How late a loop woke, s."""
+
+    median: float
+    p99: float
+    worst: float
+
+
+class ServoFigures(TypedDict):
+    """A dance of servos."""
+
+    title: str
+    feasible: bool | None
+    time_scale: float | None
+    limiting_joints: list[str] | None
+    rig: str
+    port: str
+    completed: bool
+    duration: float
+    baud: int
+    rate: float
+    bus_ceiling_hz: float
+    achieved_hz: float
+    deadline_misses: int
+    lateness: LatenessFigures
+    frame_loss: float
+    faults: list[str]
+    ending: str
+    tracking_rms_deg: float
+    tracking_rms_deg_by_joint: dict[str, float]

@@ -4,16 +4,154 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from enpointe.console import Console
-from enpointe.options import Json, Quiet
+from enpointe.console import Console, rows
+from enpointe.errors import RigError
+from enpointe.options import Effort, Json, OutputOptions, Quiet, SpeechOptions, Tempo, unbundled
+
+if TYPE_CHECKING:
+    from enpointe.feasibility import Feasibility
 
 __all__ = ["servo_verbs"]
 
 servo_verbs = typer.Typer()
+
+RigFile = Annotated[str, typer.Option("--rig", help="puppet, op3, or a TOML file of yours.")]
+
+
+@servo_verbs.command("servo")
+@unbundled
+def servo(
+    source: Annotated[
+        str,
+        typer.Argument(
+            help="A shipped score's name, a .bmn file, or a motion or recording (.npz) of the"
+            " dancer or of the rig's own body."
+        ),
+    ],
+    *,
+    rig: RigFile = "puppet",
+    port: Annotated[
+        str,
+        typer.Option(
+            help="A serial port; emulated for a bus in a process of its own; memory for one with a"
+            " clock of its own, the same bit for bit each time."
+        ),
+    ] = "emulated",
+    effort: Effort = None,
+    tempo: Tempo = None,
+    baud: Annotated[int | None, typer.Option(help="bit/s; the rig file's if left out.")] = None,
+    rate: Annotated[float | None, typer.Option(help="Hz; the rig file's if left out.")] = None,
+    stand: Annotated[
+        bool, typer.Option("--stand/--free", help="The puppet hangs on a stand, or must balance.")
+    ] = True,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Say whether the rig can dance it, and do no more.")
+    ] = False,
+    as_written: Annotated[
+        bool, typer.Option("--as-written", help="Don't slow down what servos can't follow.")
+    ] = False,
+    faults: Annotated[
+        Path | None, typer.Option(help="What goes wrong on an emulated bus, in TOML.")
+    ] = None,
+    output: OutputOptions,
+) -> int:
+    """Dance on a rig of Dynamixel servos. Ctrl-C parks it; a second one lets go at once."""
+    from enpointe.hardware.emulator import load_faults
+    from enpointe.hardware.rig_file import load_rig
+    from enpointe.servoing import servo as dance
+    from enpointe.servoing import would
+
+    console = output.console()
+    chosen = load_rig(rig).at(baud, rate)
+    script = () if faults is None else load_faults(faults)
+    if dry_run:
+        return _say(console, would(source, chosen, effort=effort, tempo=tempo, stand=stand), output)
+    with console.progress() as progress:
+        danced = dance(
+            source,
+            rig=chosen,
+            port=port,
+            effort=effort,
+            tempo=tempo,
+            stand=stand,
+            as_written=as_written,
+            faults=script,
+            seed=output.seed,
+            progress=progress,
+        )
+    folder = output.folder(f"{Path(source).stem}-{chosen.name}")
+    console.show(danced.summary(), danced.save(folder), folder)
+    for fault in danced.statistics.faults:
+        console.warn(fault)
+    return 0 if danced.completed else 1
+
+
+def _say(console: Console, found: Feasibility, output: OutputOptions) -> int:
+    if output.json:
+        console.print_json(found.summary())
+    else:
+        console.print(rows(found.lines()))
+    return 0 if found.feasible else 1
+
+
+@servo_verbs.command("calibrate")
+@unbundled
+def calibrate(
+    *,
+    rig: RigFile = "puppet",
+    port: Annotated[str, typer.Option(help="A serial port.")],
+    out: Annotated[
+        Path | None, typer.Option(help="The file to write; needed unless --set-up.")
+    ] = None,
+    set_up: Annotated[
+        bool, typer.Option("--set-up", help="Only write the servos' settings, measure nothing.")
+    ] = False,
+    signs: Annotated[bool, typer.Option(help="Ask for each joint's positive way.")] = True,
+    speech: SpeechOptions,
+) -> int:
+    """Measure how a rig's horns were put on, and write its file. All joints go limp."""
+    from enpointe.hardware.calibration import Calibration
+    from enpointe.hardware.dynamixel.link import Link
+    from enpointe.hardware.dynamixel.ports import open_port
+    from enpointe.hardware.rig_file import load_rig
+
+    if out is None and not set_up:
+        raise RigError("say with --out which file to write, or use --set-up")
+    console = speech.console()
+    chosen = load_rig(rig)
+    link = Link(open_port(port, chosen.baud))
+    try:
+        wizard = Calibration(chosen, link, _asked, console.print)
+        if not typer.confirm("all joints go limp now: is the puppet held?", err=True):
+            return 1
+        wizard.prepare()
+        if out is None:
+            count = wizard.set_up()
+            if speech.json:
+                console.print_json({"settings": count})
+            else:
+                console.print(f"{count} settings written")
+            return 0
+        wizard.measure(signs=signs)
+        wizard.verify()
+        findings = wizard.save(out)
+    finally:
+        link.close()
+    if speech.json:
+        console.print_json({"rig": str(out), "findings": [str(each) for each in findings]})
+    else:
+        console.print(f"written: {out}")
+        for finding in findings:
+            console.print(str(finding))
+    return 1 if findings else 0
+
+
+def _asked(line: str) -> None:
+    typer.prompt(f"{line}; then press Enter", default="", show_default=False, err=True)
 
 
 @servo_verbs.command("fake-bus")
@@ -52,3 +190,25 @@ def fake_bus(
 
     serve(bus, script, seed, opened)
     return 0
+
+
+@servo_verbs.command()
+def doctor(
+    *,
+    json: Json = False,
+    quiet: Quiet = False,
+    port: Annotated[
+        str | None, typer.Option(help="Look at the servos on this serial port as well.")
+    ] = None,
+    rig: RigFile = "puppet",
+) -> int:
+    """Say what this machine can do: OpenGL, encoder, serial ports, versions; and a rig's state."""
+    from enpointe.doctor import as_table, diagnose, examine, examine_rig
+
+    console = Console(json=json, quiet=quiet)
+    findings = None if port is None else examine_rig(rig, port)
+    if json:
+        console.print_json({**diagnose(), "rig": findings})
+    else:
+        console.print(as_table(examine(), findings))
+    return 1 if findings else 0

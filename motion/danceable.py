@@ -269,11 +269,13 @@ def _legs(model: mujoco.MjModel, soles: NDArray[np.int64]) -> tuple[_Leg, ...]:
     legs = []
     for side in Side:
         foot, toe = model.body(f"{side}_foot").id, model.body(f"{side}_toe").id
-        chain = [model.body(f"{side}_{part}").id for part in ("thigh", "shank", "foot")]
+        chain = [foot]
+        while model.body_parentid[model.body_parentid[chain[-1]]] != 0:
+            chain.append(int(model.body_parentid[chain[-1]]))
         legs.append(
             _Leg(
                 dofs=np.flatnonzero(np.isin(model.dof_bodyid, chain)),
-                knee=int(model.joint(f"{side}_knee_bend").dofadr[0]),
+                knee=int(model.body_dofadr[model.body(f"{side}_shank").id]),
                 soles=np.flatnonzero(np.isin(bodies, (foot, toe))),
             )
         )

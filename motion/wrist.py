@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Protocol
 
 import mujoco
 import numpy as np
@@ -20,7 +21,7 @@ from enpointe.motion.effort import logistic
 from enpointe.motion.motion import Motion
 from enpointe.notation import Side
 
-__all__ = ["LogisticFit", "Profile", "fit_logistic", "wrist_paths", "wrist_profiles"]
+__all__ = ["LogisticFit", "Profile", "Way", "fit_logistic", "wrist_paths", "wrist_profiles"]
 
 Array = NDArray[np.float64]
 _MOVES = 0.10
@@ -50,6 +51,18 @@ class Profile:
     speed: Array
     length: float
     seconds: float
+
+
+class Way(Protocol):
+    """Anything that goes its way from 0 to 1 while its time goes from 0 to 1."""
+
+    @property
+    def phase(self) -> Array:
+        """(S,), share of the time."""
+
+    @property
+    def distance(self) -> Array:
+        """(S,), share of the way."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,7 +131,7 @@ def wrist_profiles(motion: Motion) -> tuple[Profile, ...]:
     return tuple(profiles)
 
 
-def fit_logistic(profiles: Sequence[Profile]) -> LogisticFit | None:
+def fit_logistic(profiles: Sequence[Way]) -> LogisticFit | None:
     """Fit eq. 5.2 with the asymptote of eq. 5.4 to all profiles together; None without any.
 
     Every profile counts alike, however many samples it has.

@@ -18,7 +18,14 @@ from enpointe.motion import Motion
 from enpointe.motion.stations import GRAVITY
 from enpointe.sim.contacts import ContactReader
 
-__all__ = ["CONTROL_PERIOD", "SimulatedBody"]
+__all__ = [
+    "CONTROL_PERIOD",
+    "FALLEN",
+    "SimulatedBody",
+    "has_diverged",
+    "help_on_root",
+    "refuse_help",
+]
 
 CONTROL_PERIOD = 0.002
 """s between commands: 500 Hz."""
@@ -58,7 +65,7 @@ class SimulatedBody:
         *,
         period: float = CONTROL_PERIOD,
     ) -> None:
-        _refuse_help(model)
+        refuse_help(model)
         self._substeps = round(period / model.opt.timestep) if np.isfinite(period) else 0
         if self._substeps < 1 or abs(self._substeps * model.opt.timestep - period) > 1e-9:
             raise BodyError(
@@ -115,7 +122,7 @@ class SimulatedBody:
         for _ in range(self._substeps):
             mujoco.mj_step(model, data)
             if _is_helped(data):
-                np.maximum(self._root_force, _help(data), out=self._root_force)
+                np.maximum(self._root_force, help_on_root(data), out=self._root_force)
         self._contacts.read(data)
         self._judge()
 
@@ -136,8 +143,7 @@ class SimulatedBody:
                 _checked(f"command {name}", value, self.model.nu)
 
     def _judge(self) -> None:
-        # MuJoCo resets a diverged simulation to its first state and leaves a warning behind.
-        if self.data.warning.number[_DIVERGED].any():
+        if has_diverged(self.data):
             self.fault = "the simulation diverged"
         elif self._contacts.lies or self.data.subtree_com[0, 2] < FALLEN * self._first_com_height:
             self.fault = "fell"
@@ -152,8 +158,13 @@ def _checked(name: str, value: NDArray[np.float64], length: int) -> NDArray[np.f
     return array
 
 
+def has_diverged(data: mujoco.MjData) -> bool:
+    """Whether the simulation has; MuJoCo then begins again by itself and leaves a warning."""
+    return bool(data.warning.number[_DIVERGED].any())
+
+
 def _is_helped(data: mujoco.MjData) -> bool:
-    """Whether `_help` is anything but zero: hardly ever, and far quicker to see than to add up."""
+    """Whether `help_on_root` is anything but zero: hardly ever, and far quicker to see than to add up."""
     return bool(
         np.count_nonzero(data.qfrc_applied[:6])
         or np.count_nonzero(data.qfrc_actuator[:6])
@@ -162,7 +173,7 @@ def _is_helped(data: mujoco.MjData) -> bool:
     )
 
 
-def _help(data: mujoco.MjData) -> NDArray[np.float64]:
+def help_on_root(data: mujoco.MjData) -> NDArray[np.float64]:
     """Force and moment on the root from anything but gravity, floor and the dancer's own limbs."""
     direct = np.abs(data.qfrc_applied[:6]) + np.abs(data.qfrc_actuator[:6])
     passive = np.abs(data.qfrc_passive[:6])
@@ -170,7 +181,8 @@ def _help(data: mujoco.MjData) -> NDArray[np.float64]:
     return np.asarray(direct + passive + pulls)
 
 
-def _refuse_help(model: mujoco.MjModel) -> None:
+def refuse_help(model: mujoco.MjModel) -> None:
+    """Raise `BodyError` if a stage would hold a dancer up by more than a floor."""
     if model.nmocap or model.neq:
         raise BodyError("a dancer has no mocap bodies and no equality constraints to hold on to")
     forbidden = mujoco.mjtDisableBit.mjDSBL_GRAVITY | mujoco.mjtDisableBit.mjDSBL_CONTACT

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from enpointe.hardware.clock import Clock, VirtualClock, WallClock
 from enpointe.hardware.emulator.bus import Bus, Supply, Written
-from enpointe.hardware.emulator.clock import Clock, VirtualClock, WallClock
 from enpointe.hardware.emulator.description import (
     BusDescription,
     ServoDescription,

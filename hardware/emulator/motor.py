@@ -1,23 +1,17 @@
 """A DC motor behind gears: current from voltage and speed, torque from current, heat from current.
 
-    I = (V - k_e w) / R        torque = k_t I        C dT/dt = R I^2 - h A (T - T_air)
+    I = (V - k_e w) / R        torque = k_t I
 
-R, k_t and k_e follow from stall torque, stall current and no-load speed of the datasheet. The heat
-model is ours: one lump, the specific heat of metal and plastic together 700 J/(kg K), still air at
-h = 10 W/(m^2 K) over the case's whole surface (textbook values for natural convection); an
-XM430-W350 stalled for good reaches its limit of 80 C from 25 C in about two minutes.
+R, k_t and k_e follow from stall torque, stall current and no-load speed of the datasheet; how warm
+it gets, from `HeatLump`.
 """
 
 from __future__ import annotations
 
 from enpointe.hardware.datasheet import ServoModel
+from enpointe.hardware.heat import ROOM, HeatLump
 
 __all__ = ["ROOM", "Motor"]
-
-ROOM = 25.0
-"""Degrees Celsius of the air."""
-_SPECIFIC_HEAT = 700.0
-_CONVECTION = 10.0
 
 
 class Motor:
@@ -36,10 +30,8 @@ class Motor:
         self.torque = 0.0
         self.duty = 0.0
         self.temperature = ROOM
-        width, height, depth = model.dimensions
-        area = 2.0 * (width * height + height * depth + depth * width)
-        self._loss = _CONVECTION * area
-        self._capacity = _SPECIFIC_HEAT * model.mass
+        lump = HeatLump.of(model)
+        self._loss, self._capacity = lump.loss, lump.capacity
         self._resistance = model.resistance
         self._torque_constant = model.torque_constant
         self._back_emf = model.back_emf

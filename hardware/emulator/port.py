@@ -9,8 +9,8 @@ from __future__ import annotations
 import serial
 from dynamixel_sdk import PortHandler
 
+from enpointe.hardware.clock import VirtualClock
 from enpointe.hardware.emulator.bus import Bus
-from enpointe.hardware.emulator.clock import VirtualClock
 
 __all__ = ["EmulatedPort"]
 

@@ -8,13 +8,12 @@ kept until a reboot, those that Shutdown does not name as well.
 
 from __future__ import annotations
 
-from enum import IntFlag
-
 from enpointe.hardware.emulator.memory import Memory
 from enpointe.hardware.emulator.motor import Motor
+from enpointe.hardware.hardware_error import HardwareError
 from enpointe.hardware.units import TENTH_VOLT
 
-__all__ = ["OVERLOAD_SECONDS", "HardwareError", "Protection"]
+__all__ = ["OVERLOAD_SECONDS", "OVERLOAD_SHARE", "HardwareError", "Protection"]
 
 OVERLOAD_SECONDS = 2.0
 """A load beyond `OVERLOAD_SHARE` for so long is an overload."""
@@ -22,16 +21,6 @@ OVERLOAD_SHARE = 0.8
 """Of the stall current."""
 _STARVED = 0.8
 """Share of Min Voltage Limit below which a motor can't be run."""
-
-
-class HardwareError(IntFlag):
-    """Bits of Hardware Error Status(70) and of Shutdown(63)."""
-
-    INPUT_VOLTAGE = 0x01
-    OVERHEATING = 0x04
-    ENCODER = 0x08
-    ELECTRICAL_SHOCK = 0x10
-    OVERLOAD = 0x20
 
 
 class Protection:

@@ -18,8 +18,8 @@ from types import FrameType
 import numpy as np
 
 from enpointe.errors import RigError
+from enpointe.hardware.clock import Clock, WallClock
 from enpointe.hardware.emulator.bus import Bus
-from enpointe.hardware.emulator.clock import Clock, WallClock
 from enpointe.hardware.emulator.description import BusDescription, bus_of
 from enpointe.hardware.emulator.fault_run import FaultRun
 from enpointe.hardware.emulator.faults import Fault

@@ -16,7 +16,7 @@ from enpointe.motion.retargeting.holding import ramped
 from enpointe.motion.retargeting.landmarks import sided
 from enpointe.motion.retargeting.plan import Plan
 
-__all__ = ["Asking", "posed"]
+__all__ = ["Asking", "Directions", "posed"]
 
 Array = NDArray[np.float64]
 _DT = 1.0
@@ -52,7 +52,7 @@ _LOST, _BETTER = 0.45, 0.6
 a joint's range: the pose is sought anew, and kept if it leaves less than this share of the cost."""
 
 
-class _Directions(mink.Task):
+class Directions(mink.Task):
     """Segments that point where they should: (b - a) / length to a unit vector."""
 
     def __init__(self, body: Body, names: list[str]) -> None:
@@ -131,7 +131,7 @@ class Asking:
     def __init__(self, plan: Plan, body: Body) -> None:
         model = body.model
         names = [name for name in body.segments if name in plan.directions]
-        self._directions = _Directions(body, names)
+        self._directions = Directions(body, names)
         self._wanted = np.stack([plan.directions[name] for name in names], axis=1)
         self._limbs = np.array([not name.endswith("_hand") for name in names])
         self.plan, self._rest = plan, body.rest

@@ -23,7 +23,7 @@ EXERCISES = (
     "grand-jete-en-tournant",
     "glissade-jete-assemble",
 )
-STEPS = ("releve", "releve-one-foot", "plie-releve", "fondu")
+STEPS = ("releve", "releve-one-foot", "plie-releve", "fondu", "grand-battement")
 
 
 def at(name: str, beat: Fraction | int) -> ResolvedFrame:
@@ -39,7 +39,7 @@ def named(frame: ResolvedFrame, side: Side) -> tuple[str, str, float | None]:
 
 
 def test_all_are_shipped() -> None:
-    """The six exercises, the first port de bras, four steps and the evaluation poses."""
+    """The six exercises, the first port de bras, five steps and the evaluation poses."""
     others = {"first-port-de-bras", "evaluation-poses"}
     assert set(shipped_scores()) == {*EXERCISES, *STEPS, *others}
 

@@ -1,4 +1,4 @@
-"""Time as the emulator's users see it: real, or as fast as it can be computed."""
+"""Time as a rig sees it: real, or, on an emulated bus, as fast as it can be computed."""
 
 from __future__ import annotations
 

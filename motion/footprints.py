@@ -1,0 +1,198 @@
+"""Where the feet of another body stand when it dances what a dancer danced.
+
+Each stretch of standing has one footprint: the dancer's, on the body's scale. A body of servos has
+feet that are large for its size; a footprint that would lie in that of the other foot is moved out
+of it by the shortest way. A heel rises in proportion to the dancer's, so that at her highest the
+foot stands on its second sole, and stays down if there is none.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from enpointe.models.anatomy import SIDES
+from enpointe.models.soles import sole_geoms
+from enpointe.motion.retargeting.body import Body
+from enpointe.motion.retargeting.holding import ramped, runs
+
+__all__ = ["Footing", "Sole", "footings"]
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+_STEADY = np.radians(25.0)
+"""A standing foot that turns by less than this does not turn."""
+_FLAT, _RISEN = np.radians(5.0), np.radians(25.0)
+"""A heel up by less than the first is down; up by more than the second it is in demi-pointe."""
+_SETTLE = 0.2
+"""s in which a foot comes from where it was led in the air to where it stands."""
+_CLEAR = 0.004
+"""m between two footprints."""
+
+
+@dataclass(frozen=True)
+class Sole:
+    """What of a rigid foot can be stood on, from the ankle, the foot lying flat.
+
+    Attributes:
+        edge: Middle of the axis that the heel rises about, (3,), m.
+        radius: Of the studs, m.
+        rise: How far the heel is up when the second sole lies on the floor, rad; 0 without one.
+        outline: Corners of the footprint, (4, 2), m.
+    """
+
+    edge: Array
+    radius: float
+    rise: float
+    outline: Array
+
+    @classmethod
+    def of(cls, body: Body, side: str) -> Sole:
+        """The sole of a body's foot."""
+        model = body.model
+        geoms = sole_geoms(model)
+        mine = [body.bodies[f"{side}_{part}"] for part in ("foot", "toe")]
+        geoms = geoms[np.isin(model.geom_bodyid[geoms], mine)]
+        data = mujoco.MjData(model)
+        data.qpos[:] = body.rest
+        mujoco.mj_kinematics(model, data)
+        places = data.geom_xpos[geoms] - body.at_rest[f"{side}_ankle"]
+        radius = float(model.geom_size[geoms[0], 0])
+        flat = places[:, 2] < places[:, 2].min() + 1e-3
+        front = places[flat][:, 0].max()
+        edge = places[flat & (places[:, 0] > front - 2 * radius)].mean(axis=0)
+        edge[0] = front
+        rise = 0.0
+        if not flat.all():
+            ahead = places[~flat].mean(axis=0) - edge
+            rise = float(np.arctan2(ahead[2], ahead[0]))
+        (x0, y0), (x1, y1) = places[:, :2].min(axis=0), places[:, :2].max(axis=0)
+        corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
+        grown = np.array(corners) + radius * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
+        return cls(edge, radius, rise, grown)
+
+
+@dataclass(frozen=True)
+class Footing:
+    """One foot over T samples.
+
+    Attributes:
+        standing: (T,), whether it stands.
+        laid: (T,), 1 where it stands, falling to 0 in the air.
+        ankle: (T, 3), m; where it does not stand, on the way from one footprint to the next.
+        turn: (T, 3, 3), of the foot.
+    """
+
+    standing: Mask
+    laid: Array
+    ankle: Array
+    turn: Array
+
+
+def footings(
+    feet: dict[str, tuple[Array, Array, Array]],
+    standing: dict[str, Mask],
+    body: Body,
+    scale: float,
+    rate: float,
+) -> dict[str, Footing]:
+    """Footings of both feet.
+
+    Args:
+        feet: By side, the dancer's ball (T, 3), m, and the frames of toes and foot (T, 3, 3).
+        standing: By side, (T,), whether it stands.
+        body: Whose feet are to stand.
+        scale: Its size over the dancer's.
+        rate: Samples a second.
+    """
+    soles = {side: Sole.of(body, side) for side in SIDES}
+    balls = {side: scale * feet[side][0][:, :2] for side in SIDES}
+    yaws = {side: _headings(feet[side][1], standing[side]) for side in SIDES}
+    _stand_clear(balls, yaws, standing, soles)
+    made = {}
+    for side in SIDES:
+        rise = _risen(feet[side][2], standing[side], soles[side].rise)
+        place, yaw, rise = (
+            _led(track, standing[side]) for track in (balls[side], yaws[side], rise)
+        )
+        turn = Rotation.from_euler("ZY", np.column_stack([yaw, rise])).as_matrix()
+        edge = np.column_stack([place, np.full(len(place), soles[side].radius)])
+        laid = ramped(standing[side], _SETTLE, rate)
+        made[side] = Footing(standing[side], laid, edge - turn @ soles[side].edge, turn)
+    return made
+
+
+def _headings(toes: Array, standing: Mask) -> Array:
+    yaw = np.unwrap(np.arctan2(toes[:, 1, 0], toes[:, 0, 0]))
+    for run in runs(standing):
+        if np.ptp(yaw[run]) < _STEADY:
+            yaw[run] = np.median(yaw[run])
+    return yaw
+
+
+def _risen(foot: Array, standing: Mask, most: float) -> Array:
+    pitch = np.maximum(-np.arcsin(np.clip(foot[:, 2, 0], -1.0, 1.0)) - _FLAT, 0.0)
+    rise = np.zeros_like(pitch)
+    for run in runs(standing & (pitch > 0.0)):
+        highest = float(pitch[run].max()) + _FLAT
+        share = pitch[run] / pitch[run].max()
+        rise[run] = share * (most if highest > _RISEN else min(highest, most))
+    return rise
+
+
+def _led(track: Array, standing: Mask) -> Array:
+    """A track where a foot stands, straight from one such time to the next."""
+    at = np.flatnonzero(standing)
+    if not len(at):
+        return track
+    columns = track.reshape(len(track), -1)
+    led = [np.interp(np.arange(len(track)), at, column[at]) for column in columns.T]
+    return np.column_stack(led).reshape(track.shape)
+
+
+def _stand_clear(
+    balls: dict[str, Array],
+    yaws: dict[str, Array],
+    standing: dict[str, Mask],
+    soles: dict[str, Sole],
+) -> None:
+    """Give every stretch of standing its place, in place, out of the other foot's way."""
+    order = sorted((run.start, side, run) for side in SIDES for run in runs(standing[side]))
+    taken: dict[str, list[slice]] = {side: [] for side in SIDES}
+    for _, side, run in order:
+        balls[side][run] = np.median(balls[side][run], axis=0)
+        other = SIDES[1 - SIDES.index(side)]
+        for beside in taken[other]:
+            first, last = max(run.start, beside.start), min(run.stop, beside.stop)
+            if first < last:
+                mine = _footprint(soles[side], balls[side][first], yaws[side][first])
+                theirs = _footprint(soles[other], balls[other][first], yaws[other][first])
+                balls[side][run] += _way_out(mine, theirs)
+        taken[side].append(run)
+
+
+def _footprint(sole: Sole, ball: Array, yaw: float) -> Array:
+    c, s = np.cos(yaw), np.sin(yaw)
+    return np.asarray(ball + (sole.outline - sole.edge[:2]) @ np.array([[c, s], [-s, c]]))
+
+
+def _way_out(mine: Array, theirs: Array) -> Array:
+    """The shortest way, (2,), that one rectangle must go to be clear of another."""
+    best, least = np.zeros(2), np.inf
+    for corners in (mine, theirs):
+        for side in (corners[1] - corners[0], corners[2] - corners[1]):
+            axis = side / np.linalg.norm(side)
+            own, other = mine @ axis, theirs @ axis
+            for depth, way in (
+                (other.max() - own.min() + _CLEAR, axis),
+                (own.max() - other.min() + _CLEAR, -axis),
+            ):
+                if depth <= 0.0:
+                    return np.zeros(2)
+                if depth < least:
+                    best, least = depth * way, depth
+    return best

@@ -1,0 +1,94 @@
+"""A body of servos hung by its trunk on a stand: how a puppet is first tried, feet off the floor.
+
+What stands behind the horns of an emulated bus (structurally a `Plant` of
+`enpointe.hardware.emulator`, which this room does not know). The trunk is held upright and still by
+the stand, gravity and every limb's inertia are there, a floor is not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from enpointe.errors import BodyError
+
+__all__ = ["StandPlant"]
+
+Array = NDArray[np.float64]
+_STUCK = 1e3
+"""N m of friction in a joint with a stone in its gears."""
+
+
+class StandPlant:
+    """A MuJoCo body without its free root.
+
+    Args:
+        spec: A body on a free root with hinges; copied, never changed.
+        angles: rad at first, of each joint.
+        joints: The joint of each servo, in the order of the bus.
+        signs: 1, or -1 where a servo turns the other way than its joint; all 1 without.
+        offsets: rad that a servo has where its joint is at zero; all 0 without.
+
+    Raises:
+        BodyError: A joint that the body lacks, or no free root.
+    """
+
+    def __init__(
+        self,
+        spec: mujoco.MjSpec,
+        angles: Array,
+        joints: Sequence[str],
+        *,
+        signs: Sequence[float] | None = None,
+        offsets: Sequence[float] | None = None,
+    ) -> None:
+        self.model = _hung(spec)
+        known = [self.model.joint(j).name for j in range(self.model.njnt)]
+        if missing := [joint for joint in joints if joint not in known]:
+            raise BodyError(f"the body has no joint {', '.join(missing)}")
+        places = np.array([known.index(joint) for joint in joints])
+        self._qpos, self._dof = self.model.jnt_qposadr[places], self.model.jnt_dofadr[places]
+        self._sign = np.ones(len(joints)) if signs is None else np.array(signs, dtype=float)
+        self._offset = np.zeros(len(joints)) if offsets is None else np.array(offsets, dtype=float)
+        self._friction = np.array(self.model.dof_frictionloss[self._dof])
+        self.data = mujoco.MjData(self.model)
+        self.data.qpos[self._qpos] = angles
+        mujoco.mj_forward(self.model, self.data)
+
+    def advance(self, torque: Sequence[float], period: float) -> None:
+        """Go on by a period (s) under the motors' torques (N m)."""
+        self.data.qfrc_applied[self._dof] = self._sign * np.asarray(torque)
+        for _ in range(round(period / self.model.opt.timestep)):
+            mujoco.mj_step(self.model, self.data)
+
+    def position(self) -> Sequence[float]:
+        """Angle of each horn, rad."""
+        angles: list[float] = (self._sign * self.data.qpos[self._qpos] + self._offset).tolist()
+        return angles
+
+    def velocity(self) -> Sequence[float]:
+        """Velocity of each horn, rad/s."""
+        speeds: list[float] = (self._sign * self.data.qvel[self._dof]).tolist()
+        return speeds
+
+    def jam(self, joint: int, jammed: bool) -> None:
+        """Hold a joint where it is, or let it go."""
+        friction = _STUCK if jammed else self._friction[joint]
+        self.model.dof_frictionloss[self._dof[joint]] = friction
+
+
+def _hung(spec: mujoco.MjSpec) -> mujoco.MjModel:
+    hung = spec.copy()
+    roots = [joint for joint in hung.joints if joint.type == mujoco.mjtJoint.mjJNT_FREE]
+    if len(roots) != 1:
+        raise BodyError(f"a body on a stand has one free root, not {len(roots)}")
+    hung.delete(roots[0])
+    for key in list(hung.keys):
+        hung.delete(key)
+    for geom in hung.geoms:
+        if geom.type == mujoco.mjtGeom.mjGEOM_PLANE:
+            geom.contype = geom.conaffinity = 0
+    return hung.compile()
