@@ -148,3 +148,14 @@ def test_models_that_share_no_address_cannot_share_a_rig() -> None:
     assert common([1020, 1220, 1060])["Goal Position"].address == 116
     assert "Goal Current" in common([1020, 1060])
     assert QUICK.watchdog == 0.1
+
+
+def test_a_late_longer_answer_is_not_taken_for_a_shorter_one() -> None:
+    """The SDK takes its first bytes: current and velocity would be heat and volts."""
+    late = Fault(FaultKind.DELAY, (1,), duration=(0.002, 0.002), amount=0.012)
+    made = bench(faults=[late])
+    made.bus.servos[0].motor.current = 2.0
+    assert made.link.sync_read([1], 126, 10) == {}
+    data = made.link.read_bytes(1, 144, 3)
+    assert data is not None
+    assert list(data) == [120, 0, 25]
