@@ -41,7 +41,7 @@ EXAMPLES = {
     "write": "FF FF FD 00 01 09 00 03 74 00 00 02 00 00 CA 89",
     "reboot": "FF FF FD 00 01 03 00 08 2F 4E",
     "sync_read": "FF FF FD 00 FE 09 00 82 84 00 04 00 01 02 CE FA",
-    "fast_sync_read": "FF FF FD 00 FE 0A 00 8A 84 00 04 00 03 07 04 4E 1D",
+    "fast_sync_read": "FF FF FD 00 FE 0A 00 8A 84 00 04 00 03 07 04 20 F2",
     "sync_write": "FF FF FD 00 FE 11 00 83 74 00 04 00 01 96 00 00 00 02 AA 00 00 00 82 87",
 }
 
