@@ -2,8 +2,8 @@
 
 A frame is one sync read of everybody: Present Current, Velocity and Position, ten neighbouring
 bytes that all X models have at the same place. Fast reads come whole or not at all, so that one
-servo gone silences all; after two lost frames everybody is asked for an answer of his own, those
-who were silent last, until all have answered for a while.
+servo gone silences all; after two lost frames everybody is asked for an answer of his own, and
+whoever silences those after him is asked last from then on, until all have answered for a while.
 """
 
 from __future__ import annotations
@@ -68,6 +68,7 @@ class FrameReader:
         self.lost = 0
         self._link = link
         self._ids = tuple(ids)
+        self._order = list(ids)
         self._clock = clock
         self._fast = fast
         self._values = np.zeros((3, len(ids)), dtype=np.int64)
@@ -105,8 +106,12 @@ class FrameReader:
     def _asked(self) -> dict[int, tuple[int, bytes]]:
         if self._fast and not self._careful:
             return self._link.fast_sync_read(self._ids, *FRAME)
-        order = sorted(range(len(self._ids)), key=lambda place: -self._read_at[place])
-        return self._link.sync_read([self._ids[place] for place in order], *FRAME)
+        found = self._link.sync_read(self._order, *FRAME)
+        silent = next((servo for servo in self._order if servo not in found), None)
+        if silent is not None:
+            self._order.remove(silent)
+            self._order.append(silent)
+        return found
 
     def _count(self, whole: bool) -> None:
         self.frames += 1

@@ -97,7 +97,7 @@ class Link:
         for attempt in range(_TRIES):
             with self._mine():
                 number, result, _ = self.handler.ping(self.port, servo)
-            if self._came(result, attempt):
+            if self._came(result == dynamixel_sdk.COMM_SUCCESS, attempt):
                 return int(number)
         return None
 
@@ -117,10 +117,14 @@ class Link:
     ) -> bytes | None:
         """Neighbouring registers as bytes; None if no answer came."""
         for attempt in range(tries):
+            found: dict[int, tuple[int, bytes]] = {}
             with self._mine():
-                data, result, _ = self.handler.readTxRx(self.port, servo, address, size)
-            if self._came(result, attempt) and len(data) == size:
-                return bytes(data)
+                result = self.handler.readTx(self.port, servo, address, size)
+                if result == dynamixel_sdk.COMM_SUCCESS:
+                    # The SDK's own takes the first bytes of any answer, also of a late, longer one.
+                    self._collect({servo}, size, found)
+            if self._came(servo in found, attempt):
+                return found[servo][1]
         return None
 
     def write(
@@ -134,7 +138,7 @@ class Link:
                 result, error = self.handler.writeTxRx(
                     self.port, servo, register.address, register.size, list(data)
                 )
-            if self._came(result, attempt):
+            if self._came(result == dynamixel_sdk.COMM_SUCCESS, attempt):
                 return _status(int(error) & ~ALERT)
         return None
 
@@ -213,12 +217,11 @@ class Link:
             return {}
         return {part[1]: (part[0], part[2 : 2 + size]) for part in parts}
 
-    def _came(self, result: int, attempt: int) -> bool:
+    def _came(self, good: bool, attempt: int) -> bool:
         self.counts.asked += 1
         self.counts.retried += attempt > 0
-        good = bool(result == dynamixel_sdk.COMM_SUCCESS)
         self.counts.failed += not good
-        return good
+        return bool(good)
 
     @staticmethod
     def _refuse_mark(data: bytes | bytearray) -> None:

@@ -67,7 +67,11 @@ class Line:
         slots = [(at + (number + 1) * step, byte) for number, byte in enumerate(data)]
         if self._sent and not self._instant:
             slots = [slot for slot in slots if not any(self._collides(slot, s) for s in self._sent)]
+        before = self._answered[-1][0] if self._answered else 0.0
         self._answered.extend(slots)
+        if slots and slots[0][0] < before:
+            # A late answer to an earlier question is still to come: bytes come by their times.
+            self._answered = deque(sorted(self._answered, key=lambda slot: slot[0]))
         return at + len(data) * step
 
     def next_sent(self) -> float | None:

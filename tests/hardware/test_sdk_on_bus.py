@@ -241,3 +241,14 @@ def test_two_runs_are_the_same_bit_for_bit_and_another_seed_is_another_run() -> 
     assert first != other
     failed = sum(result != COMM_SUCCESS for _, result, _ in first)
     assert 0 < failed < 60
+
+
+def test_a_late_answer_does_not_hold_up_one_that_is_in_time() -> None:
+    """It comes in the midst of it, or after; the SDK gives up, and its wait comes to an end."""
+    late = Fault(FaultKind.DELAY, ids=(1,), duration=(0.001, 0.001), amount=0.05)
+    rig = Rig(2, faults=[late])
+    rig.port.setPacketTimeoutMillis(1.0)
+    assert rig.packets.ping(rig.port, 1)[1] == COMM_RX_TIMEOUT
+    assert rig.packets.ping(rig.port, 2) == (1020, *DONE)
+    rig.wait(0.1)
+    assert rig.packets.ping(rig.port, 1) == (1020, *DONE)

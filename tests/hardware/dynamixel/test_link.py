@@ -41,7 +41,7 @@ EXAMPLES = {
     "write": "FF FF FD 00 01 09 00 03 74 00 00 02 00 00 CA 89",
     "reboot": "FF FF FD 00 01 03 00 08 2F 4E",
     "sync_read": "FF FF FD 00 FE 09 00 82 84 00 04 00 01 02 CE FA",
-    "fast_sync_read": "FF FF FD 00 FE 0A 00 8A 84 00 04 00 03 07 04 4E 1D",
+    "fast_sync_read": "FF FF FD 00 FE 0A 00 8A 84 00 04 00 03 07 04 20 F2",
     "sync_write": "FF FF FD 00 FE 11 00 83 74 00 04 00 01 96 00 00 00 02 AA 00 00 00 82 87",
 }
 
@@ -148,3 +148,14 @@ def test_models_that_share_no_address_cannot_share_a_rig() -> None:
     assert common([1020, 1220, 1060])["Goal Position"].address == 116
     assert "Goal Current" in common([1020, 1060])
     assert QUICK.watchdog == 0.1
+
+
+def test_a_late_longer_answer_is_not_taken_for_a_shorter_one() -> None:
+    """The SDK takes its first bytes: current and velocity would be heat and volts."""
+    late = Fault(FaultKind.DELAY, (1,), duration=(0.002, 0.002), amount=0.012)
+    made = bench(faults=[late])
+    made.bus.servos[0].motor.current = 2.0
+    assert made.link.sync_read([1], 126, 10) == {}
+    data = made.link.read_bytes(1, 144, 3)
+    assert data is not None
+    assert list(data) == [120, 0, 25]
