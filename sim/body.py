@@ -164,7 +164,7 @@ def has_diverged(data: mujoco.MjData) -> bool:
 
 
 def _is_helped(data: mujoco.MjData) -> bool:
-    """Whether `help_on_root` is anything but zero: hardly ever, and far quicker to see than to add up."""
+    """Whether `help_on_root` is not zero: hardly ever, and quicker to see than to add up."""
     return bool(
         np.count_nonzero(data.qfrc_applied[:6])
         or np.count_nonzero(data.qfrc_actuator[:6])
