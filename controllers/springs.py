@@ -26,7 +26,6 @@ class Springs:
         motion: What to dance.
         stiffness: (nu,), of the servos, N m/rad, in the order of the model's actuators.
         feedforward: Torques along the motion; computed from inverse dynamics if None.
-        settle: s in the first pose before it begins.
     """
 
     def __init__(
@@ -34,8 +33,6 @@ class Springs:
         motion: Motion,
         stiffness: Array,
         feedforward: FeedForward | None = None,
-        *,
-        settle: float = 0.0,
     ) -> None:
         self.motion = motion
         self.stiffness = np.asarray(stiffness, dtype=float)
@@ -44,7 +41,6 @@ class Springs:
         self._qpos, self._dofs = plant.actuated_qpos, plant.actuated_dofs
         self._low, self._high = motion.model.jnt_range[motion.model.actuator_trnid[:, 0]].T
         self._none = np.zeros(motion.model.nu)
-        self._settle = settle
 
     @property
     def first_pose(self) -> Array:
@@ -55,10 +51,10 @@ class Springs:
         """Nothing is remembered between commands."""
 
     def command(self, t: float, state: State) -> Command:
-        """Goals at `t` seconds, within the joints' ranges."""
-        begun = max(max(t, state.time) - self._settle, 0.0)
-        velocity = self.motion.sample(begun)[1][self._dofs]
-        return Command(self._goal(begun), velocity, self._none, self._none, self._none)
+        """Goals at `t` seconds, or at the body's own time if that is later, within the ranges."""
+        now = max(t, state.time)
+        velocity = self.motion.sample(now)[1][self._dofs]
+        return Command(self._goal(now), velocity, self._none, self._none, self._none)
 
     def _goal(self, t: float) -> Array:
         qpos, _, _ = self.motion.sample(t)

@@ -151,7 +151,7 @@ def _led(track: Array, standing: Mask) -> Array:
         return track
     columns = track.reshape(len(track), -1)
     led = [np.interp(np.arange(len(track)), at, column[at]) for column in columns.T]
-    return np.column_stack(led).reshape(track.shape)
+    return np.asarray(np.column_stack(led).reshape(track.shape))
 
 
 def _stand_clear(

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
 from enpointe.models.contact_geometry import FLOOR, SOLE_CLASS, add_floor
 from enpointe.models.puppet.gearmotor import GEARMOTORS, Gearmotor
@@ -19,7 +20,7 @@ __all__ = [
     "quat_to",
 ]
 
-Vec = Sequence[float]
+Vec = Sequence[float] | NDArray[np.float64]
 TIMESTEP = 0.001
 """Physics step, s: that of the emulated servos' own loop."""
 DARK = (0.16, 0.16, 0.18, 1.0)
@@ -221,7 +222,7 @@ class Workbench:
         body.add_site(group=_MARKS, name=name, pos=pos)
 
 
-def quat_to(axis: Vec, along: Vec) -> np.ndarray:
+def quat_to(axis: Vec, along: Vec) -> NDArray[np.float64]:
     """w x y z of the rotation that puts z on `axis` and y as near to `along` as it can."""
     z = np.asarray(axis, dtype=float) / np.linalg.norm(axis)
     y = np.asarray(along, dtype=float)
