@@ -84,6 +84,10 @@ class ServoPlant:
         self._sign = np.ones(model.nu) if signs is None else np.array(signs, dtype=float)
         self._offset = np.zeros(model.nu) if offsets is None else np.array(offsets, dtype=float)
         self._friction = np.array(model.dof_frictionloss[self._dof])
+        self._softness = (
+            model.dof_solref[self._dof].copy(),
+            model.dof_solimp[self._dof, :2].copy(),
+        )
         self._first_height = float(self.data.subtree_com[0, 2])
         self._contacts = ContactReader(self.model)
         self._every = round(period / model.opt.timestep)
@@ -93,11 +97,16 @@ class ServoPlant:
 
     @classmethod
     def of(
-        cls, model: mujoco.MjModel, qpos: Array, servos: Sequence[tuple[str, int, float]]
+        cls,
+        model: mujoco.MjModel,
+        qpos: Array,
+        servos: Sequence[tuple[str, int, float]],
+        *,
+        period: float = 0.01,
     ) -> ServoPlant:
         """Of joints with their servos' signs and offsets (rad)."""
         joints, signs, offsets = zip(*servos, strict=True)
-        return cls(model, qpos, joints, signs=signs, offsets=offsets)
+        return cls(model, qpos, joints, signs=signs, offsets=offsets, period=period)
 
     # What the bus sees
 
@@ -129,8 +138,11 @@ class ServoPlant:
 
     def jam(self, joint: int, jammed: bool) -> None:
         """Hold a joint where it is, or let it go."""
-        friction = _STUCK if jammed else self._friction[joint]
-        self.model.dof_frictionloss[self._dof[joint]] = friction
+        dof = self._dof[joint]
+        self.model.dof_frictionloss[dof] = _STUCK if jammed else self._friction[joint]
+        # MuJoCo's friction is soft, and would let a jammed joint creep.
+        self.model.dof_solref[dof] = (0.002, 1.0) if jammed else self._softness[0][joint]
+        self.model.dof_solimp[dof, :2] = 0.9999 if jammed else self._softness[1][joint]
 
     # What the hall sees
 
