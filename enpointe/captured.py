@@ -26,7 +26,7 @@ class Captured:
     Attributes:
         path: The file.
         motion: On the dancer, from 0 s.
-        contacts: Which soles stand, and when.
+        contacts: Which soles stand, and when, without chatter.
         rate: Frames of the file a second.
         first: Number of its first frame.
         warnings: What was doubtful in the file and how it was taken, one line each.
@@ -88,7 +88,7 @@ def read_captured(
     from enpointe.models.dancer import dancer_model
     from enpointe.motion.contact_schedule import contact_schedule
     from enpointe.motion.retargeting import retarget
-    from enpointe.motion.settling import settled
+    from enpointe.motion.settling import bridged
 
     if is_stored(path):
         if mapping is not None or skeleton is not None:
@@ -107,9 +107,7 @@ def read_captured(
     # A scene of several rates has been sampled at one by now.
     rate = float(getattr(content.motion, "rate", (len(motion.time) - 1) / motion.duration))
     first = int(getattr(content.motion, "start", 0))
-    return Captured(
-        path, motion, settled(motion.model, made.contacts), rate, first, made.warnings, False
-    )
+    return Captured(path, motion, bridged(made.contacts), rate, first, made.warnings, False)
 
 
 def _content(path: Path, skeleton: str | Path | None) -> Content:

@@ -108,6 +108,16 @@ class Check:
             faults.append(joint + (f", and {len(worst) - 1} more joints" if worst[1:] else ""))
         return tuple(faults)
 
+    @property
+    def answer(self) -> str:
+        """Whether a body could do this, in words."""
+        if self.faults:
+            return f"no body could do this as it is: {'; '.join(self.faults)}"
+        if not (times := len(self.found.help)):
+            return "a body could do this"
+        where = "one moment that has" if times == 1 else f"{times} moments that have"
+        return f"a body could do this, but for {where} to be softened"
+
     def summary(self) -> dict[str, object]:
         """The figures that `--json` prints, SI units; the names are a promise to scripts."""
         found = self.found
@@ -250,7 +260,7 @@ class Check:
             for h in found.help
         ]
         rows += [("warning", warning) for warning in self.warnings]
-        rows.append(("answer", "; ".join(self.faults) or "a body could do this"))
+        rows.append(("answer", self.answer))
         return [(what, said or "never") for what, said in rows]
 
 

@@ -20,6 +20,7 @@ from enpointe.preparing import Progress, silent
 if TYPE_CHECKING:
     from enpointe.models import Anthropometry
     from enpointe.motion import Motion
+    from enpointe.motion.contact_schedule import ContactSchedule
     from enpointe.motion.easing import Eased
     from enpointe.motion.stretches import Obstacle, Stretch
     from enpointe.motion.weight_plan import WeightPlan
@@ -301,14 +302,16 @@ def _choose(
     from enpointe.motion.stretches import obstacles, outside_the_feet, stretches
     from enpointe.motion.weight_plan import plan_weight
 
-    found = [*obstacles(captured.motion, captured.contacts), *falls]
+    contacts = _steps(captured, captured.contacts)
+    found = [*obstacles(captured.motion, contacts), *falls]
     found.sort(key=lambda each: each.start)
     for _ in range(_TRIES):
-        possible = stretches(captured.motion, captured.contacts, found, asked)
+        possible = stretches(captured.motion, contacts, found, asked)
         if not possible:
             break
         longest = max(possible, key=lambda each: each.length)
         eased = ease(captured.motion, captured.contacts, longest.start, longest.end, speed)
+        eased = replace(eased, contacts=_steps(captured, eased.contacts))
         more: tuple[Obstacle, ...] = ()
         if not captured.stored:
             plan = plan_weight(eased.motion, eased.contacts, eased.motion)
@@ -321,6 +324,16 @@ def _choose(
     raise EnpointeError(
         f"{captured.path}: no half second of it can be danced on feet: {why or 'too short'}"
     )
+
+
+def _steps(captured: Captured, contacts: ContactSchedule) -> ContactSchedule:
+    """Steps that a body can take; the dancer's own are that already.
+
+    Taken of what is danced, so that a foot is led from stance to stance in the time it has there.
+    """
+    from enpointe.motion.settling import settled
+
+    return contacts if captured.stored else settled(captured.motion.model, contacts)
 
 
 def _within(found: Iterable[Obstacle], asked: tuple[float, float]) -> tuple[Obstacle, ...]:

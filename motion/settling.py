@@ -10,13 +10,27 @@ from scipy.ndimage import find_objects, label
 from enpointe.models.anatomy import SIDES
 from enpointe.motion.contact_schedule import ContactSchedule, without_chatter
 
-__all__ = ["SHORTEST_FLIGHT", "settled"]
+__all__ = ["SHORTEST_FLIGHT", "bridged", "settled"]
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 SHORTEST_FLIGHT = 0.1
 """s: a shorter time without a sole on the floor is a step seen late; what stood stays down until
 something else stands."""
+MOST_SLIDE = 0.03
+"""m: a standing foot that slides no farther is taken to stand still; feet that are dragged farther
+go their way."""
+
+
+def bridged(contacts: ContactSchedule) -> ContactSchedule:
+    """The same without contacts, and gaps in them, too short to shift weight in.
+
+    Args:
+        contacts: Evenly sampled.
+    """
+    period = float(np.median(np.diff(contacts.time)))
+    bears = _carried(without_chatter(contacts.bears, period), period)
+    return ContactSchedule(contacts.time, contacts.soles, contacts.points, bears)
 
 
 def settled(model: mujoco.MjModel, contacts: ContactSchedule) -> ContactSchedule:
@@ -28,6 +42,8 @@ def settled(model: mujoco.MjModel, contacts: ContactSchedule) -> ContactSchedule
     - contacts, and gaps in them, too short to shift weight in are left out;
     - a foot that comes down with its heel first, or leaves so, is flat meanwhile: nobody balances
       on a heel that rolls;
+    - a foot stays in its place while it stands: one that lands is seen to stand before it rests,
+      and where its heel leaves the floor the rest seems to jump;
     - a sole keeps the places at which it stands, at height 0, and goes from one stance to the next
       by a smooth step.
 
@@ -35,11 +51,11 @@ def settled(model: mujoco.MjModel, contacts: ContactSchedule) -> ContactSchedule
         model: Whose soles they are.
         contacts: Evenly sampled.
     """
-    period = float(np.median(np.diff(contacts.time)))
-    bears = _carried(without_chatter(contacts.bears, period), period)
-    points = contacts.points.copy()
+    contacts = bridged(contacts)
+    bears, points = contacts.bears.copy(), contacts.points.copy()
     for side in SIDES:
         _flatten(model, contacts.soles, side, bears, points)
+        _plant(_soles_of(model, contacts.soles, side), bears, points)
     for sole, standing in enumerate(bears.T):
         if standing.any():
             points[:, sole] = _stepped(points[:, sole], standing)
@@ -63,7 +79,7 @@ def _flatten(
     bodies = model.geom_bodyid[soles]
     heel = np.flatnonzero(bodies == model.body(f"{side}_foot").id)
     toes = np.flatnonzero(bodies == model.body(f"{side}_toe").id)
-    foot = np.concatenate([heel, toes])
+    foot = _soles_of(model, soles, side)
     on_heel, on_toes = (np.asarray(bears[:, part].any(axis=1)) for part in (heel, toes))
     flat = np.asarray(bears[:, foot].all(axis=1))
     for (stance,) in find_objects(label(on_heel | on_toes)[0]):
@@ -74,6 +90,26 @@ def _flatten(
             nearest = stood[np.abs(alone[:, None] - stood).argmin(axis=1)]
             points[np.ix_(alone, foot)] = points[np.ix_(nearest, foot)]
             bears[np.ix_(alone, foot)] = True
+
+
+def _soles_of(model: mujoco.MjModel, soles: NDArray[np.int64], side: str) -> NDArray[np.int64]:
+    parts = [model.body(f"{side}_{part}").id for part in ("foot", "toe")]
+    return np.flatnonzero(np.isin(model.geom_bodyid[soles], parts))
+
+
+def _plant(foot: NDArray[np.int64], bears: Mask, points: Array) -> None:
+    """Keep a foot in its place for as long as it stands; it may turn there.
+
+    Its place is the mean of the soles that bear; where others take over, it has not moved.
+    """
+    for (stance,) in find_objects(label(bears[:, foot].any(axis=1))[0]):
+        bearing, placed = bears[stance, foot], points[stance][:, foot, :2]
+        both = (bearing[1:] & bearing[:-1])[:, :, None]
+        steps = np.sum(np.diff(placed, axis=0) * both, axis=1) / np.maximum(both.sum(axis=1), 1)
+        way = np.vstack([np.zeros(2), np.cumsum(steps, axis=0)])
+        back = np.median(way, axis=0) - way
+        far = np.maximum(np.linalg.norm(back, axis=1, keepdims=True), 1e-9)
+        points[stance, foot, :2] += (back * np.minimum(1.0, MOST_SLIDE / far))[:, None]
 
 
 def _stepped(points: Array, standing: Mask) -> Array:

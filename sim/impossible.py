@@ -14,8 +14,12 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 PAUSE = 0.1
 """s: two times of help with less between them are one."""
+JOLT = 0.03
+"""s: what is missing for less is one sample of it, where a speed changes at once; how much is
+missing there says how often was looked, not how hard it is."""
 FAR = 1.0
 """m: beyond this the number says nothing more; hardly anything presses on the floor there."""
+_AT_ONCE = "too sudden: something starts or stops at once"
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +65,8 @@ def spans_of_help(
     for (span,) in find_objects(label(missing)[0]):
         start, end = float(wrench_time[span][0]), float(wrench_time[span][-1])
         during = (time >= start - 0.5 * period) & (time <= end + 0.5 * period)
-        why = _why(aloft[during], zmp_margin[during])
+        jolt = end - start < JOLT and not aloft[during].any()
+        why = _AT_ONCE if jolt else _why(aloft[during], zmp_margin[during])
         found.append(Help(start, end, float(wrench[span].max()), why))
     return tuple(found)
 

@@ -28,11 +28,9 @@ def check_page(check: Check) -> Page:
     """The report of a checked movement."""
     found, clock = check.found, check.clock
     faults = check.faults
-    verdict = (
-        f"No body could do this as it is: {'; '.join(faults)}."
-        if faults
-        else "A body could do this: the floor under the standing feet gives all that it needs."
-    )
+    verdict = f"{check.answer[0].upper()}{check.answer[1:]}"
+    if not (faults or found.help):
+        verdict += ": the floor under the standing feet gives all that it needs"
     caption = (
         "Red below: the centre of mass, dropped to the floor, inside the support (negative is "
         "outside); grey: the zero-moment point. Filled: force, or moment over 1 m, that nothing "
@@ -40,7 +38,7 @@ def check_page(check: Check) -> Page:
     )
     sections = [
         Section("timeline", "Over its frames", (Chart(timeline_chart(check, "line"), caption),)),
-        Section("help", "Where it is impossible", (_help(check),)),
+        Section("help", "Where it is impossible" if faults else "What to soften", (_help(check),)),
         Section("flights", "In the air", (_flights(check),)),
         Section("figures", "Figures", (_figures(check),)),
     ]
@@ -53,7 +51,7 @@ def check_page(check: Check) -> Page:
         ("length", f"{found.motion.duration:.2f} s"),
     )
     footer = "No physics is run: the movement is looked at as it is, on the dancer's body."
-    return Page(check.name, verdict, not faults, facts, None, tuple(sections), footer)
+    return Page(check.name, f"{verdict}.", not faults, facts, None, tuple(sections), footer)
 
 
 def _help(check: Check) -> Block:

@@ -13,6 +13,8 @@ from enpointe.cli import _run
 from enpointe.motion import Motion
 from enpointe.motion.formats import SkeletonMotion, read, write
 from enpointe.motion.npz import save_motion
+from enpointe.report.checks import check_page
+from enpointe.sim.impossible import Help
 
 from .commands import one_object, refused
 
@@ -45,6 +47,27 @@ def test_a_score_a_motion_and_a_recording_of_it_are_sound(
         assert figures["slip_max"] < 0.005
         assert figures["impossible"] == []
     assert [p.name for p in (home / "looked").iterdir()] == ["report.html"]
+
+
+def test_the_answer_does_not_contradict_the_moments_under_it(short: Path, home: Path) -> None:
+    """Without a fault, moments in which something is missing are told in the answer."""
+    looked = enpointe.check(enpointe.load_score(short))
+    assert looked.answer == "a body could do this"
+    assert "the floor under" in check_page(looked).verdict
+    assert "Where it is impossible" not in titles(looked)
+    jolts = (Help(0.5, 0.5, 100.0, "too sudden"), Help(1.0, 1.0, 90.0, "too sudden"))
+    jolted = replace(looked, found=replace(looked.found, help=jolts))
+    assert jolted.faults == ()
+    assert "but for 2 moments" in jolted.answer
+    assert "the floor under" not in check_page(jolted).verdict
+    assert "What to soften" in titles(jolted)
+    sinking = replace(jolted, found=replace(jolted.found, penetration_max=0.1))
+    assert sinking.answer.startswith("no body could do this")
+    assert "Where it is impossible" in titles(sinking)
+
+
+def titles(looked: enpointe.Check) -> list[str]:
+    return [section.title for section in check_page(looked).sections]
 
 
 def test_a_movement_nobody_can_do_is_answered_with_no(

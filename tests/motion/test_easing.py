@@ -141,6 +141,20 @@ def test_a_foot_that_comes_down_on_its_heel_is_flat_in_place() -> None:
         np.testing.assert_array_equal(made.points[row, heel | toes], made.points[200, heel | toes])
 
 
+def test_a_foot_that_lands_sliding_and_jumps_as_its_heel_leaves_stays_in_place() -> None:
+    bears = np.ones((300, 12), dtype=bool)
+    heel, toes = parts("left")
+    bears[:50, heel | toes] = False
+    bears[200:, heel] = False
+    raw = moved(bears)
+    raw.points[:] = raw.points[0]
+    raw.points[50:70, heel | toes, 0] += np.linspace(0.02, 0.0, 20)[:, None]
+    raw.points[200:, toes, 1] += 0.01
+    made = settled(MODEL, raw)
+    assert np.ptp(made.points[50:, toes, :2], axis=0).max() < 1e-9
+    assert np.ptp(made.points[50:200, heel, :2], axis=0).max() < 1e-9
+
+
 def test_a_heel_that_never_lies_flat_is_left_alone() -> None:
     bears = np.ones((300, 12), dtype=bool)
     _, toes = parts("left")

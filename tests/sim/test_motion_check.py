@@ -51,9 +51,9 @@ def test_standing_still_is_sound() -> None:
 
 def test_a_foot_that_skates_is_measured() -> None:
     def skate(t: float, pose: Array) -> None:
-        pose[0] += 0.05 * t
+        pose[0] += 0.04 * t
 
-    assert check_motion(moved(1.0, skate)).slip_max == pytest.approx(0.05, abs=1e-6)
+    assert check_motion(moved(1.0, skate)).slip_max == pytest.approx(0.04, abs=1e-6)
 
 
 def test_what_sinks_is_measured() -> None:
@@ -74,6 +74,18 @@ def test_nobody_hangs_in_the_air_without_help() -> None:
     assert found.support_margin_min is None
     assert found.zmp_outside_fraction is None
     assert found.contacts == {"left": (), "right": ()}
+
+
+def test_a_jolt_is_told_as_a_jolt() -> None:
+    """The trunk bows at a steady speed, and stops at once."""
+    bend = MODEL.joint("waist_bend").qposadr[0]
+
+    def bow(t: float, pose: Array) -> None:
+        pose[bend] += 0.3 * min(t, 0.3)
+
+    found = check_motion(moved(0.6, bow))
+    whys = [each.why for each in found.help if abs(each.start - 0.3) < 0.03]
+    assert whys == ["too sudden: something starts or stops at once"]
 
 
 def test_a_fall_on_the_parabola_needs_none() -> None:
