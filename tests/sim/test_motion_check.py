@@ -10,6 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from enpointe.motion import Motion
+from enpointe.motion.contact_schedule import AT_REST
 from enpointe.sim.feet import FootState
 from enpointe.sim.motion_check import check_motion
 
@@ -49,11 +50,14 @@ def test_standing_still_is_sound() -> None:
         assert [(c.start, c.end, c.on) for c in contacts] == [(0.0, 0.5, FootState.FLAT)]
 
 
-def test_a_foot_that_skates_is_measured() -> None:
-    def skate(t: float, pose: Array) -> None:
-        pose[0] += 0.05 * t
+@pytest.mark.parametrize("speed", [0.6 * AT_REST, 2.0 * AT_REST])
+def test_a_foot_that_skates_is_measured(speed: float) -> None:
+    """Slowly, so that it seems to stand, or faster: at just `AT_REST` rounding would decide."""
 
-    assert check_motion(moved(1.0, skate)).slip_max == pytest.approx(0.05, abs=1e-6)
+    def skate(t: float, pose: Array) -> None:
+        pose[0] += speed * t
+
+    assert check_motion(moved(1.0, skate)).slip_max == pytest.approx(speed, abs=1e-6)
 
 
 def test_what_sinks_is_measured() -> None:
