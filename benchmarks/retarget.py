@@ -1,6 +1,7 @@
 """How many captured frames a second `retarget` puts on the dancer, and how true they are.
 
-For each file: frames, frames a second (the median of the repeats, maps and residuals included), how
+For each file: frames, frames a second of processor time, so that other work on the machine counts
+for little (the median of the repeats, maps and residuals included), how
 far the ball of a standing foot goes from where it came to stand, how high a sole that bears is and
 how deep any is, mm, and the mean over thighs, shanks, upper arms and forearms of the median angle
 between the captured direction and the dancer's, and of its 95th percentile, degrees.
@@ -21,7 +22,7 @@ import argparse
 import json
 from pathlib import Path
 from statistics import mean, median
-from time import perf_counter
+from time import process_time
 
 import numpy as np
 
@@ -49,9 +50,9 @@ def measured(path: Path, repeats: int) -> dict[str, object]:
     """One row of the table."""
     content, times = read(path), []
     for _ in range(repeats):
-        start = perf_counter()
+        start = process_time()
         made = retarget(content)
-        times.append(perf_counter() - start)
+        times.append(process_time() - start)
     heights = made.contacts.points[:, :, 2]
     limbs = [value for name, value in made.residuals.items() if name.endswith(LIMBS)]
     return {

@@ -206,7 +206,7 @@ class _Seen:
         on_tip = pointed & hysteresis(tip_over < _FLAT_ON, tip_over < _FLAT_OFF)
         kind = np.select([flies, on_ball, on_heel, on_tip], [NONE, BALL, HEEL, TIP], NONE)
         down = without_chatter((kind != NONE)[:, None], period)[:, 0]
-        kind = np.where(down, np.where(kind == NONE, BALL, kind), NONE).astype(np.int8)
+        kind = _lasting(kind, down, period)
         pitch = np.where((kind == HEEL) | (kind == TIP), self._pitch, self._on_ball())
         pitch = averaged(pitch[:, None], _ROLLS, source.rate)[:, 0]
         lain = Rotation.from_euler("ZY", np.stack([self._heading, pitch], axis=1))
@@ -217,8 +217,9 @@ class _Seen:
         readings = {BALL: (ball, self._toe, self._ankle), HEEL: (heel,), TIP: (tip,)}
         for each, places in readings.items():
             still |= _standing(places, kind == each, source, spins)
-        # A tip that brushes the floor is kept out of it, and not to it.
-        kind = np.where((kind == TIP) & ~still, NONE, kind).astype(np.int8)
+        # A tip that only brushes the floor is kept out of it, and not to it.
+        brushes = (kind == TIP) & ~hysteresis(still & (kind == TIP), kind == TIP)
+        kind = np.where(brushes, NONE, kind).astype(np.int8)
         return Steps(kind, still, self._turn, pitch, self._heading, readings)
 
     def _rolling(self, on_heel: Mask, on_ball: Mask) -> Mask:
@@ -240,6 +241,20 @@ class _Seen:
         pitch = np.arcsin(np.minimum(height, _STEEPEST)) - np.arcsin(self._rise / self._length)
         own = np.minimum(self._pitch, _ON_POINTE)
         return np.asarray(np.where(height > _STEEPEST, np.maximum(pitch, own), pitch))
+
+
+def _lasting(kind: NDArray[np.int8], down: Mask, period: float) -> NDArray[np.int8]:
+    """Kinds (T,) of a foot while it is down: what does not last is as what was before it."""
+    found = np.full_like(kind, NONE)
+    lasts = np.zeros_like(down)
+    for each in (BALL, HEEL, TIP):
+        lasts |= without_chatter((kind == each)[:, None], period)[:, 0] & (kind == each)
+    for run in runs(down):
+        own = kind[run]
+        known = np.flatnonzero(lasts[run] if lasts[run].any() else own != NONE)
+        before = np.searchsorted(known, np.arange(len(own)), side="right") - 1
+        found[run] = own[known[np.maximum(before, 0)]]
+    return found
 
 
 def _pitch(turn: Array) -> Array:

@@ -2,7 +2,8 @@
 
 Said of the file's own feet, in its own size, before anything is pinned. Where one foot is on the
 floor it bears; where both are, one that is at rest bears, and one that slides beside it is drawn
-along, as in a tendu or a glissade, which is no fault. Where both slide, both skate.
+along, as in a tendu or a glissade, which is no fault; so is the tip of the toes that touches beside
+another foot. Where both slide, both skate.
 
 A foot is followed by what of it is on the floor: heel, tip, or ball; of the ball by the one of
 several readings (toe joint, ankle, and the ankle with the foot's heading and pitch) that slides
@@ -17,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from enpointe.models.anatomy import SIDES
-from enpointe.motion.retargeting.body import NONE
+from enpointe.motion.retargeting.body import NONE, TIP
 from enpointe.motion.retargeting.floor import Steps
 from enpointe.motion.retargeting.holding import runs
 
@@ -38,7 +39,8 @@ def slides(steps: Mapping[str, Steps], time: Array) -> dict[str, Array]:
     found = {}
     for side, other in zip(SIDES, reversed(SIDES), strict=True):
         mine, beside = steps[side], steps[other]
-        bears = (mine.kind != NONE) & (mine.still | ~((beside.kind != NONE) & beside.still))
+        carries = (mine.kind != NONE) & ((mine.kind != TIP) | (beside.kind == NONE))
+        bears = carries & (mine.still | ~((beside.kind != NONE) & beside.still))
         found[side] = np.zeros(len(time))
         for kind, readings in mine.readings.items():
             for run in runs(bears & (mine.kind == kind)):

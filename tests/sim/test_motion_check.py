@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from enpointe.motion import Motion
 from enpointe.sim.feet import FootState
-from enpointe.sim.motion_check import check_motion
+from enpointe.sim.motion_check import MEANT_STILL, check_motion
 
 from .test_body import FIRST_POSE, MODEL
 
@@ -49,11 +49,14 @@ def test_standing_still_is_sound() -> None:
         assert [(c.start, c.end, c.on) for c in contacts] == [(0.0, 0.5, FootState.FLAT)]
 
 
-def test_a_foot_that_skates_is_measured() -> None:
-    def skate(t: float, pose: Array) -> None:
-        pose[0] += 0.04 * t
+@pytest.mark.parametrize("speed", [0.6 * MEANT_STILL, 2.0 * MEANT_STILL])
+def test_a_foot_that_skates_is_measured(speed: float) -> None:
+    """Slowly, so that it seems to stand, or faster: at just `MEANT_STILL` rounding would decide."""
 
-    assert check_motion(moved(1.0, skate)).slip_max == pytest.approx(0.04, abs=1e-6)
+    def skate(t: float, pose: Array) -> None:
+        pose[0] += speed * t
+
+    assert check_motion(moved(1.0, skate)).slip_max == pytest.approx(speed, abs=1e-6)
 
 
 def test_what_sinks_is_measured() -> None:
