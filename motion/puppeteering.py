@@ -102,8 +102,9 @@ def puppeteer(
     bears = np.array([planned.bears[planned.index(float(t))] for t in time])
     owner = motion.model.geom_bodyid[planned.soles]
     standing = {
-        side: bears[:, np.isin(owner, [dancer.bodies[f"{side}_{p}"] for p in ("foot", "toe")])].any(
-            axis=1
+        side: np.any(
+            bears[:, np.isin(owner, [dancer.bodies[f"{side}_{p}"] for p in ("foot", "toe")])],
+            axis=1,
         )
         for side in SIDES
     }

@@ -173,12 +173,16 @@ def test_the_verdict_comes_first_and_is_honest(
     assert f"down at {fallen.recording.time[-1]:.2f} s" in said
 
 
+def measured(dance: Performance, **figures: float) -> Performance:
+    """The same dance, had its figures been others."""
+    assert dance.physics is not None
+    measures = dataclasses.replace(dance.physics.measures, **figures)
+    return dataclasses.replace(dance, physics=dataclasses.replace(dance.physics, measures=measures))
+
+
 def test_who_topples_at_the_end_has_not_completed(physical: Performance, tmp_path: Path) -> None:
     """No fault stopped the dance, but its figures say that she no longer stood."""
-    assert physical.measures is not None
-    toppling = dataclasses.replace(
-        physical, measures=dataclasses.replace(physical.measures, fell_at=1.25)
-    )
+    toppling = measured(physical, fell_at=1.25)
     page = read(write_report(toppling, tmp_path, video=False)["report"])
     said = words_of(verdict(page))
     assert "not completed" in said
@@ -187,10 +191,7 @@ def test_who_topples_at_the_end_has_not_completed(physical: Performance, tmp_pat
 
 
 def test_help_on_the_root_is_told(physical: Performance, tmp_path: Path) -> None:
-    assert physical.measures is not None
-    helped = dataclasses.replace(
-        physical, measures=dataclasses.replace(physical.measures, root_force_max=12.5)
-    )
+    helped = measured(physical, root_force_max=12.5)
     page = read(write_report(helped, tmp_path, video=False)["report"])
     assert "not an honest dance" in words_of(verdict(page))
     assert "12.5 N" in words_of(verdict(page))
