@@ -131,7 +131,7 @@ def _headings(toes: Array, standing: Mask) -> Array:
     for run in runs(standing):
         if np.ptp(yaw[run]) < _STEADY:
             yaw[run] = np.median(yaw[run])
-    return yaw
+    return np.asarray(yaw)
 
 
 def _risen(foot: Array, standing: Mask, most: float) -> Array:
