@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from enpointe.preparing import Progress, silent
 
 if TYPE_CHECKING:
-    from enpointe.controllers import Recording
+    from enpointe.controllers import Command, Recording
     from enpointe.hardware.dynamixel import ServoRig, Statistics
     from enpointe.hardware.rig_file import Rig
     from enpointe.motion import Motion
@@ -101,13 +101,14 @@ class _OnStage:
     """A rig that can also fall over."""
 
     def __init__(self, rig: ServoRig, stage: ServoPlant) -> None:
-        self.period = rig.period
-        self.read, self.write, self.observe = rig.read, rig.write, rig.observe
+        self.period, self.fault = rig.period, rig.fault
+        self.read, self.observe = rig.read, rig.observe
         self._rig, self._stage = rig, stage
 
-    @property
-    def fault(self) -> str | None:
-        return self._rig.fault or self._stage.fault
+    def write(self, command: Command) -> None:
+        """Send goals, and look whether it still stands."""
+        self._rig.write(command)
+        self.fault = self._rig.fault or self._stage.fault
 
 
 def _after_standing(motion: Motion) -> Motion:

@@ -131,7 +131,7 @@ def _headings(toes: Array, standing: Mask) -> Array:
     for run in runs(standing):
         if np.ptp(yaw[run]) < _STEADY:
             yaw[run] = np.median(yaw[run])
-    return np.asarray(yaw)
+    return yaw
 
 
 def _risen(foot: Array, standing: Mask, most: float) -> Array:
@@ -141,7 +141,7 @@ def _risen(foot: Array, standing: Mask, most: float) -> Array:
         highest = float(pitch[run].max()) + _FLAT
         share = pitch[run] / pitch[run].max()
         rise[run] = share * (most if highest > _RISEN else min(highest, most))
-    return rise
+    return np.asarray(rise)
 
 
 def _led(track: Array, standing: Mask) -> Array:
