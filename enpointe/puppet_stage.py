@@ -101,13 +101,12 @@ class _OnStage:
     """A rig that can also fall over."""
 
     def __init__(self, rig: ServoRig, stage: ServoPlant) -> None:
-        self.period = rig.period
-        self.fault: str | None = None
+        self.period, self.fault = rig.period, rig.fault
         self.read, self.observe = rig.read, rig.observe
         self._rig, self._stage = rig, stage
 
     def write(self, command: Command) -> None:
-        """Take a command and let one period pass; see whether she still stands."""
+        """Send goals, and look whether it still stands."""
         self._rig.write(command)
         self.fault = self._rig.fault or self._stage.fault
 

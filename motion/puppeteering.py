@@ -101,13 +101,10 @@ def puppeteer(
     planned = contact_schedule(motion)
     bears = np.array([planned.bears[planned.index(float(t))] for t in time])
     owner = motion.model.geom_bodyid[planned.soles]
-    standing = {
-        side: np.any(
-            bears[:, np.isin(owner, [dancer.bodies[f"{side}_{p}"] for p in ("foot", "toe")])],
-            axis=1,
-        )
-        for side in SIDES
-    }
+    standing = {}
+    for side in SIDES:
+        mine = np.isin(owner, [dancer.bodies[f"{side}_{part}"] for part in ("foot", "toe")])
+        standing[side] = np.asarray(bears[:, mine].any(axis=1), dtype=bool)
     feet = footings(source.feet, standing, body, scale, RATE)
     poser = _Poser(source, body, scale, feet)
 
