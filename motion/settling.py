@@ -29,8 +29,9 @@ def bridged(contacts: ContactSchedule) -> ContactSchedule:
         contacts: Evenly sampled.
     """
     period = float(np.median(np.diff(contacts.time)))
-    bears = _carried(without_chatter(contacts.bears, period), period)
-    return ContactSchedule(contacts.time, contacts.soles, contacts.points, bears)
+    bears, points = without_chatter(contacts.bears, period), contacts.points.copy()
+    _carry(bears, points, period)
+    return ContactSchedule(contacts.time, contacts.soles, points, bears)
 
 
 def settled(model: mujoco.MjModel, contacts: ContactSchedule) -> ContactSchedule:
@@ -62,14 +63,12 @@ def settled(model: mujoco.MjModel, contacts: ContactSchedule) -> ContactSchedule
     return ContactSchedule(contacts.time, contacts.soles, points, bears)
 
 
-def _carried(bears: Mask, period: float) -> Mask:
-    """Short times with nothing down are bridged by what stood before them."""
-    carried = bears.copy()
+def _carry(bears: Mask, points: Array, period: float) -> None:
+    """Bridge short times with nothing down by what stood before them, where it stood."""
     for (gap,) in find_objects(label(~bears.any(axis=1))[0]):
         short = (gap.stop - gap.start) * period < SHORTEST_FLIGHT - 1e-9
         if short and gap.start > 0 and gap.stop < len(bears):
-            carried[gap] = bears[gap.start - 1]
-    return carried
+            bears[gap], points[gap] = bears[gap.start - 1], points[gap.start - 1]
 
 
 def _flatten(

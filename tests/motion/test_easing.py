@@ -115,8 +115,12 @@ def test_a_short_time_in_the_air_is_a_step_and_a_long_one_a_flight() -> None:
     bears = np.ones((300, 12), dtype=bool)
     bears[100:108] = False
     bears[200:230] = False
-    made = settled(MODEL, moved(bears))
+    raw = moved(bears)
+    raw.points[:] = raw.points[0]
+    raw.points[100:108, :, 0] += 0.3
+    made = settled(MODEL, raw)
     assert made.bears[100:108].all()
+    assert np.ptp(made.points[:200, :, 0], axis=0).max() < 1e-9
     assert not made.bears[200:230].any()
     motion = waving(2.99, 100.0)
     (flight,) = obstacles(motion, made)
