@@ -178,9 +178,18 @@ def test_everything_that_is_imported_is_declared(
     project = pyproject["project"]
     declared = {
         re.split("[<>=]", requirement)[0]
-        for requirement in project["dependencies"] + project["optional-dependencies"]["video"]
+        for requirement in [
+            *project["dependencies"],
+            *project["optional-dependencies"]["video"],
+            *project["optional-dependencies"]["ros"],
+        ]
     }
-    imports = {"PIL": "pillow", "dynamixel_sdk": "dynamixel-sdk", "serial": "dynamixel-sdk"}
+    imports = {
+        "PIL": "pillow",
+        "mcap_ros2": "mcap-ros2-support",
+        "dynamixel_sdk": "dynamixel-sdk",
+        "serial": "dynamixel-sdk",
+    }
     imported = {name for room in rooms.values() for name in imported_by(room)}
     assert {imports.get(name, name) for name in imported} <= declared
 

@@ -75,7 +75,8 @@ class Link:
             raise RigError("the bus has one owner: call it from the thread that opened it")
         if self.lost:
             raise PortLostError(_GONE)
-        # A module's constant is how the SDK is told; another port of this process has its own.
+        # A module's constant is how the SDK is told; other ports of this process keep theirs.
+        others = port_handler.LATENCY_TIMER
         port_handler.LATENCY_TIMER = self._patience
         try:
             yield
@@ -83,6 +84,7 @@ class Link:
             self.lost = True
             raise PortLostError(f"{_GONE} ({' '.join(str(error).split())})") from error
         finally:
+            port_handler.LATENCY_TIMER = others
             self.port.is_using = False
 
     def close(self) -> None:
