@@ -35,7 +35,7 @@ from .captured import captured
 from .dancing import choreography, motion, solved, solver, written_score
 
 PORTS_DE_BRAS = ("first-port-de-bras", "third-port-de-bras", "fourth-port-de-bras")
-STEPS = ("releve", "releve-one-foot", "plie-releve", "fondu")
+STEPS = ("releve", "releve-one-foot", "plie-releve", "fondu", "grand-battement")
 WITHOUT_JUMPS = ("adage-developpe", "temps-lie-grand-battement", "evaluation-poses", *STEPS)
 
 
