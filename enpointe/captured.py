@@ -16,7 +16,33 @@ if TYPE_CHECKING:
     from enpointe.motion.contact_schedule import ContactSchedule
     from enpointe.motion.formats import Content
 
-__all__ = ["Captured", "is_motion_file", "read_captured"]
+__all__ = ["Captured", "Clock", "clock_of", "is_motion_file", "read_captured"]
+
+
+@dataclass(frozen=True, slots=True)
+class Clock:
+    """How a file counts its frames.
+
+    Attributes:
+        rate: Frames per second.
+        first: Number of its first frame.
+    """
+
+    rate: float
+    first: int = 0
+
+    def frame(self, time: float) -> int:
+        """The frame at, or next to, `time` seconds."""
+        return self.first + round(time * self.rate)
+
+
+def clock_of(motion: Motion, content: Content | None = None) -> Clock:
+    """How a motion's samples are counted, or the frames of the file that it was made of."""
+    from enpointe.motion.formats import MarkerMotion, SkeletonMotion
+
+    captured = None if content is None else content.motion
+    first = captured.start if isinstance(captured, SkeletonMotion | MarkerMotion) else 0
+    return Clock((len(motion.time) - 1) / motion.duration, first)
 
 
 @dataclass(frozen=True)
@@ -27,8 +53,7 @@ class Captured:
         path: The file.
         motion: On the dancer, from 0 s.
         contacts: Which soles stand, and when, without chatter.
-        rate: Frames of the file a second.
-        first: Number of its first frame.
+        clock: How the file counts its frames.
         warnings: What was doubtful in the file and how it was taken, one line each.
         stored: Whether it is the dancer's own motion, which was put on nobody.
     """
@@ -36,14 +61,9 @@ class Captured:
     path: Path
     motion: Motion
     contacts: ContactSchedule
-    rate: float
-    first: int
+    clock: Clock
     warnings: tuple[str, ...]
     stored: bool
-
-    def frame(self, time: float) -> int:
-        """The file's frame at, or next to, `time` seconds."""
-        return self.first + round(time * self.rate)
 
 
 def is_motion_file(source: str | Path) -> bool:
@@ -94,8 +114,7 @@ def read_captured(
         if mapping is not None or skeleton is not None:
             raise EnpointeError(f"{path} is the dancer's own motion: no map or skeleton applies")
         motion = load_stored(path, dancer, flesh=True)
-        rate = (len(motion.time) - 1) / motion.duration
-        return Captured(path, motion, contact_schedule(motion), rate, 0, (), True)
+        return Captured(path, motion, contact_schedule(motion), clock_of(motion), (), True)
     content = _content(path, skeleton)
     made = retarget(
         content,
@@ -104,10 +123,8 @@ def read_captured(
         progress=lambda done, total: progress("putting it on the dancer", done, total),
     )
     motion = replace(made.motion, name=path.stem)
-    # A scene of several rates has been sampled at one by now.
-    rate = float(getattr(content.motion, "rate", (len(motion.time) - 1) / motion.duration))
-    first = int(getattr(content.motion, "start", 0))
-    return Captured(path, motion, bridged(made.contacts), rate, first, made.warnings, False)
+    clock = clock_of(motion, content)
+    return Captured(path, motion, bridged(made.contacts), clock, made.warnings, False)
 
 
 def _content(path: Path, skeleton: str | Path | None) -> Content:

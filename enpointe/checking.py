@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from enpointe.captured import Clock, clock_of
 from enpointe.notation import Score, load_score
 from enpointe.performing import perform
 from enpointe.preparing import Progress, silent
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
     from enpointe.motion.contact_schedule import ContactSchedule
     from enpointe.sim.motion_check import MotionCheck
 
-__all__ = ["Check", "Clock", "Slide", "check"]
+__all__ = ["Check", "Slide", "check"]
 
 SLIP_MAX, PENETRATION_MAX = 0.01, 0.01
 """m: a foot that slides or sinks farther shows."""
@@ -32,23 +33,6 @@ FASTEST = 5
 """Joints whose speed is told."""
 BEYOND_MAX = 0.5
 """Degrees: what the eye forgives a joint beyond its range."""
-
-
-@dataclass(frozen=True, slots=True)
-class Clock:
-    """How a file counts its frames.
-
-    Attributes:
-        rate: Frames per second.
-        first: Number of its first frame.
-    """
-
-    rate: float
-    first: int = 0
-
-    def frame(self, time: float) -> int:
-        """The frame at, or next to, `time` seconds."""
-        return self.first + round(time * self.rate)
 
 
 @dataclass(frozen=True, slots=True)
@@ -321,7 +305,7 @@ def check(
     progress("looking", 0, 1)
     found = check_motion(motion)
     progress("looking", 1, 1)
-    return Check(motion.name, found, Clock((len(motion.time) - 1) / motion.duration))
+    return Check(motion.name, found, clock_of(motion))
 
 
 def _is_capture(path: Path) -> bool:
@@ -332,7 +316,7 @@ def _checked_capture(
     path: Path, dancer: Anthropometry | None, mapping: str | Path | None, progress: Progress
 ) -> Check:
     from enpointe.models.dancer import dancer_model
-    from enpointe.motion.formats import MarkerMotion, SkeletonMotion, read
+    from enpointe.motion.formats import read
     from enpointe.motion.retargeting import retarget
     from enpointe.sim.motion_check import check_motion
 
@@ -343,10 +327,7 @@ def _checked_capture(
         mapping=mapping,
         progress=lambda done, total: progress("putting it on the dancer", done, total),
     )
-    captured = content.motion
-    first = captured.start if isinstance(captured, SkeletonMotion | MarkerMotion) else 0
     motion = replace(made.motion, name=path.stem)
-    clock = Clock((len(motion.time) - 1) / motion.duration, first)
     progress("looking", 0, 1)
     found = check_motion(motion, made.contacts, averaged_over=MEASURED)
     progress("looking", 1, 1)
@@ -354,4 +335,4 @@ def _checked_capture(
         Slide(side, float(motion.time[int(np.argmax(far))]), float(far.max()))
         for side, far in made.slides.items()
     )
-    return Check(path.stem, found, clock, made.warnings, made.contacts, slides)
+    return Check(path.stem, found, clock_of(motion, content), made.warnings, made.contacts, slides)

@@ -60,7 +60,7 @@ class FilePerformance(Danced):
     def whole(self) -> bool:
         """Whether all that was asked for was tried."""
         missing = (self.asked[1] - self.asked[0]) - self.stretch.length
-        return missing <= 1.5 / self.captured.rate
+        return missing <= 1.5 / self.captured.clock.rate
 
     @property
     def completed(self) -> bool:
@@ -77,7 +77,7 @@ class FilePerformance(Danced):
     def verdict(self) -> str:
         """What of the file was danced, what not and why, in a sentence or two."""
         file, stretch = self.captured, self.stretch
-        frames = f"frames {file.frame(stretch.start)}–{file.frame(stretch.end)}"
+        frames = f"frames {file.clock.frame(stretch.start)}–{file.clock.frame(stretch.end)}"
         part = f"{frames} of {file.path.name} ({stretch.start:.2f}–{stretch.end:.2f} s)"
         if self.recording is None:
             return f"No physics: {part} as they are drawn, without weight."
@@ -90,7 +90,7 @@ class FilePerformance(Danced):
             said += ", danced under gravity on the dancer's own feet"
         else:
             said += f", were tried under gravity, and she fell at {fell:.2f} s, frame"
-            said += f" {file.frame(fell)}"
+            said += f" {file.clock.frame(fell)}"
         if not self.whole:
             said += f". The rest is not danced: {self._why_not()}"
         return f"{said}. {self._help()}"
@@ -142,13 +142,13 @@ class FilePerformance(Danced):
             "rules": [],
             "logistic": None,
             "asked": list(self.asked),
-            "rate": self.captured.rate,
-            "first_frame": self.captured.first,
+            "rate": self.captured.clock.rate,
+            "first_frame": self.captured.clock.first,
             "danced": self._figures(self.stretch, None),
             "not_danced": [self._figures(each, each.why) for each in self.obstacles],
             "could_be_danced": [self._figures(each, None) for each in self.others],
             "fell_at_in_file": fell,
-            "fell_at_frame": None if fell is None else self.captured.frame(fell),
+            "fell_at_frame": None if fell is None else self.captured.clock.frame(fell),
             "warnings": list(self.captured.warnings),
         }
         return {**figures, **self.physical_figures()}
@@ -157,8 +157,8 @@ class FilePerformance(Danced):
         return {
             "start": span.start,
             "end": span.end,
-            "first_frame": self.captured.frame(span.start),
-            "last_frame": self.captured.frame(span.end),
+            "first_frame": self.captured.clock.frame(span.start),
+            "last_frame": self.captured.clock.frame(span.end),
             "why": why,
         }
 
@@ -255,7 +255,7 @@ def _asked(captured: Captured, span: tuple[float, float] | None) -> tuple[float,
     start, end = span or (0.0, duration)
     if not (isfinite(start) and isfinite(end) and 0.0 <= start < end):
         raise EnpointeError(f"a span goes from one second to a later one, not {start:g} to {end:g}")
-    if start >= duration or end > duration + 1.0 / captured.rate:
+    if start >= duration or end > duration + 1.0 / captured.clock.rate:
         raise EnpointeError(
             f"{captured.path} is {duration:.2f} s long; {start:g} to {end:g} s is not in it"
         )

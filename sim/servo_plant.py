@@ -18,12 +18,11 @@ from numpy.typing import NDArray
 from enpointe.errors import BodyError
 from enpointe.sim.body import FALLEN, has_diverged, help_on_root, refuse_help
 from enpointe.sim.contacts import ContactReader
+from enpointe.sim.horns import Horns
 
 __all__ = ["ServoPlant"]
 
 Array = NDArray[np.float64]
-_STUCK = 1e3
-"""N m of friction in a joint with a stone in its gears."""
 
 
 class ServoPlant:
@@ -79,15 +78,7 @@ class ServoPlant:
         self.held = True
         self.fault: str | None = None
         self._actuator = np.array([actuators[joint] for joint in joints])
-        trn = model.actuator_trnid[self._actuator, 0]
-        self._qpos, self._dof = model.jnt_qposadr[trn], model.jnt_dofadr[trn]
-        self._sign = np.ones(model.nu) if signs is None else np.array(signs, dtype=float)
-        self._offset = np.zeros(model.nu) if offsets is None else np.array(offsets, dtype=float)
-        self._friction = np.array(model.dof_frictionloss[self._dof])
-        self._softness = (
-            model.dof_solref[self._dof].copy(),
-            model.dof_solimp[self._dof, :2].copy(),
-        )
+        self._horns = Horns(self.model, self.data, joints, signs, offsets)
         self._first_height = float(self.data.subtree_com[0, 2])
         self._contacts = ContactReader(self.model)
         self._every = round(period / model.opt.timestep)
@@ -115,7 +106,7 @@ class ServoPlant:
         if self.held:
             return
         data = self.data
-        data.ctrl[self._actuator] = self._sign * np.asarray(torque)
+        data.ctrl[self._actuator] = self._horns.joint_torque(torque)
         for _ in range(round(period / self.model.opt.timestep)):
             mujoco.mj_step(self.model, data)
             np.maximum(self._root_force, help_on_root(data), out=self._root_force)
@@ -128,21 +119,15 @@ class ServoPlant:
 
     def position(self) -> Sequence[float]:
         """Angle of each horn, rad."""
-        angles: list[float] = (self._sign * self.data.qpos[self._qpos] + self._offset).tolist()
-        return angles
+        return self._horns.position()
 
     def velocity(self) -> Sequence[float]:
         """Velocity of each horn, rad/s."""
-        speeds: list[float] = (self._sign * self.data.qvel[self._dof]).tolist()
-        return speeds
+        return self._horns.velocity()
 
     def jam(self, joint: int, jammed: bool) -> None:
         """Hold a joint where it is, or let it go."""
-        dof = self._dof[joint]
-        self.model.dof_frictionloss[dof] = _STUCK if jammed else self._friction[joint]
-        # MuJoCo's friction is soft, and would let a jammed joint creep.
-        self.model.dof_solref[dof] = (0.002, 1.0) if jammed else self._softness[0][joint]
-        self.model.dof_solimp[dof, :2] = 0.9999 if jammed else self._softness[1][joint]
+        self._horns.jam(joint, jammed)
 
     # What the hall sees
 

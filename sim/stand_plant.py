@@ -14,12 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from enpointe.errors import BodyError
+from enpointe.sim.horns import Horns
 
 __all__ = ["StandPlant"]
 
 Array = NDArray[np.float64]
-_STUCK = 1e3
-"""N m of friction in a joint with a stone in its gears."""
 
 
 class StandPlant:
@@ -49,35 +48,28 @@ class StandPlant:
         known = [self.model.joint(j).name for j in range(self.model.njnt)]
         if missing := [joint for joint in joints if joint not in known]:
             raise BodyError(f"the body has no joint {', '.join(missing)}")
-        places = np.array([known.index(joint) for joint in joints])
-        self._qpos, self._dof = self.model.jnt_qposadr[places], self.model.jnt_dofadr[places]
-        self._sign = np.ones(len(joints)) if signs is None else np.array(signs, dtype=float)
-        self._offset = np.zeros(len(joints)) if offsets is None else np.array(offsets, dtype=float)
-        self._friction = np.array(self.model.dof_frictionloss[self._dof])
         self.data = mujoco.MjData(self.model)
-        self.data.qpos[self._qpos] = angles
+        self._horns = Horns(self.model, self.data, joints, signs, offsets)
+        self.data.qpos[self._horns.qpos] = angles
         mujoco.mj_forward(self.model, self.data)
 
     def advance(self, torque: Sequence[float], period: float) -> None:
         """Go on by a period (s) under the motors' torques (N m)."""
-        self.data.qfrc_applied[self._dof] = self._sign * np.asarray(torque)
+        self.data.qfrc_applied[self._horns.dofs] = self._horns.joint_torque(torque)
         for _ in range(round(period / self.model.opt.timestep)):
             mujoco.mj_step(self.model, self.data)
 
     def position(self) -> Sequence[float]:
         """Angle of each horn, rad."""
-        angles: list[float] = (self._sign * self.data.qpos[self._qpos] + self._offset).tolist()
-        return angles
+        return self._horns.position()
 
     def velocity(self) -> Sequence[float]:
         """Velocity of each horn, rad/s."""
-        speeds: list[float] = (self._sign * self.data.qvel[self._dof]).tolist()
-        return speeds
+        return self._horns.velocity()
 
     def jam(self, joint: int, jammed: bool) -> None:
         """Hold a joint where it is, or let it go."""
-        friction = _STUCK if jammed else self._friction[joint]
-        self.model.dof_frictionloss[self._dof[joint]] = friction
+        self._horns.jam(joint, jammed)
 
 
 def _hung(spec: mujoco.MjSpec) -> mujoco.MjModel:

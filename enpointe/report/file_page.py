@@ -78,8 +78,8 @@ def draw_file(
 def _facts(dance: FilePerformance) -> tuple[tuple[str, str], ...]:
     captured = dance.captured
     return (
-        ("frames", f"{captured.first}–{captured.frame(captured.motion.duration)}"),
-        ("rate", f"{captured.rate:g} a second"),
+        ("frames", f"{captured.clock.first}–{captured.clock.frame(captured.motion.duration)}"),
+        ("rate", f"{captured.clock.rate:g} a second"),
         ("length", f"{captured.motion.duration:.2f} s"),
         ("controller", dance.controller),
     )
@@ -87,7 +87,7 @@ def _facts(dance: FilePerformance) -> tuple[tuple[str, str], ...]:
 
 def _moment(dance: FilePerformance, t: float) -> str:
     shown = dance.eased.source_time(t)
-    return f"frame {dance.captured.frame(shown)}, {shown:.2f} s"
+    return f"frame {dance.captured.clock.frame(shown)}, {shown:.2f} s"
 
 
 def _spans_section(dance: FilePerformance) -> Section:
@@ -100,7 +100,7 @@ def _spans_section(dance: FilePerformance) -> Section:
         ("Frames", "s", ""),
         tuple(
             Row(
-                f"{dance.captured.frame(start)}–{dance.captured.frame(end)}",
+                f"{dance.captured.clock.frame(start)}–{dance.captured.clock.frame(end)}",
                 (Cell(f"{start:.2f}–{end:.2f}", start), Cell(said)),
             )
             for start, end, said in sorted(rows)
