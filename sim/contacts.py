@@ -37,13 +37,14 @@ class ContactReader:
         self._other_force = 0.0
         self.lies = False
         self._three_rows = _THREE if _forces_stand_alone(model) else None
+        self._seen = b""
         self._sort([])
 
     def read(self, data: mujoco.MjData) -> None:
         """Take the contacts of `data`, right after a step."""
         self._force[:] = 0.0
         self._depth[:] = 0.0
-        self._point[:] = data.geom_xpos[self.soles]
+        self._point[:] = data.geom_xpos.take(self.soles, axis=0)
         self._point[:, 2] -= self._radius
         self._others, self._other_force = 0, 0.0
         self.lies = False
@@ -52,20 +53,21 @@ class ContactReader:
         given = self._given(data, contacts.efc_address)
         # The axes of a contact's frame are its rows; the first points from first to second geom.
         forces = (given[:, None] @ contacts.frame.reshape(-1, 3, 3))[:, 0]
-        pairs = contacts.geom.tolist()
-        if pairs != self._pairs:
-            self._sort(pairs)
+        geoms = contacts.geom
+        if geoms.tobytes() != self._seen:
+            self._seen = geoms.tobytes()
+            self._sort(geoms.tolist())
         for i in self._elsewhere:
-            first, second = pairs[i]
+            first, second = self._pairs[i]
             self._meet(first, second, given[i])
         if len(self._bearing):
-            np.add.at(self._force, self._rows, self._signs * forces[self._bearing])
-            self._depth[self._rows] = np.maximum(-contacts.dist[self._bearing], 0.0)
+            np.matmul(self._onto, forces, out=self._force)
+            self._depth[self._rows] = np.maximum(-contacts.dist.take(self._bearing), 0.0)
 
     def _given(self, data: mujoco.MjData, rows: NDArray[np.int32]) -> NDArray[np.float64]:
         """Forces in the contacts' own frames, (C, 3); `rows` is where each one's begin."""
         if self._three_rows is not None and (rows >= 0).all():
-            return np.asarray(data.efc_force[rows[:, None] + self._three_rows])
+            return np.asarray(data.efc_force.take(rows[:, None] + self._three_rows))
         wrenches = np.zeros((len(rows), 6))
         for i, wrench in enumerate(wrenches):
             mujoco.mj_contactForce(self._model, data, i, wrench)
@@ -75,12 +77,13 @@ class ContactReader:
         """Tell soles on the floor from the rest; from step to step the pairs hardly change."""
         rows = [self._sole_row(first, second) for first, second in pairs]
         bearing = [i for i, row in enumerate(rows) if row is not None]
-        signs = [1.0 if pairs[i][0] in self._floors else -1.0 for i in bearing]
         self._pairs = pairs
         self._elsewhere = [i for i, row in enumerate(rows) if row is None]
         self._bearing = np.array(bearing, dtype=np.int64)
         self._rows = np.array([row for row in rows if row is not None], dtype=np.int64)
-        self._signs = np.array(signs).reshape(-1, 1)
+        self._onto = np.zeros((len(self.soles), len(pairs)))
+        signs = [1.0 if pairs[i][0] in self._floors else -1.0 for i in bearing]
+        self._onto[self._rows, bearing] = signs
 
     def _meet(self, first: int, second: int, force: NDArray[np.float64]) -> None:
         """Note a contact that is no sole on the floor."""

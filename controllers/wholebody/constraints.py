@@ -72,10 +72,8 @@ class FrictionPyramids:
     name: ClassVar[str] = "friction pyramids"
 
     def limits(self, instant: Instant) -> Bounds:
-        low, high = (repeated(end, instant.size).copy() for end in (-np.inf, np.inf))
-        low[instant.nv :] = 0.0
-        high[instant.nv :] = np.repeat(instant.capacity * (0.25 * instant.weight), 4)
-        return Bounds(low, high)
+        high = np.repeat(instant.capacity * (0.25 * instant.weight), 4)
+        return Bounds(repeated(0.0, len(high)), high, instant.forces)
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,18 +116,15 @@ class JointRange:
     def limits(self, instant: Instant) -> Bounds:
         ahead = self.horizon
         q, v = instant.qpos[self.angles], instant.qvel[self.dofs]
-        drift, scale = q + v * ahead, 2.0 / ahead**2
-        fastest, slowing = self.speed / ahead, v / ahead
-        high = np.minimum(scale * (self.high - drift), fastest - slowing)
-        low = np.maximum(scale * (self.low - drift), -fastest - slowing)
+        scale, fastest, slowing = 2.0 / ahead**2, self.speed / ahead, v / ahead
+        high = np.minimum(scale * (self.high - q) - slowing, fastest) - slowing
+        low = np.maximum(scale * (self.low - q) - slowing, -fastest) - slowing
         crossed = low > high
         if crossed.any():
             middle = 0.5 * (self.low + self.high)
             low = np.where(crossed & (q > middle), high, low)
             high = np.where(crossed & (q <= middle), low, high)
-        bounds = Bounds(*(repeated(end, instant.size).copy() for end in (-np.inf, np.inf)))
-        bounds.low[self.dofs], bounds.high[self.dofs] = low, high
-        return bounds
+        return Bounds(low, high, self.dofs)
 
 
 def joint_torques(instant: Instant, unknowns: Array) -> Array:

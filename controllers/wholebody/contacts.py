@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from enpointe.controllers.wholebody.reference import Reference
+from enpointe.controllers.wholebody.rows import repeated
 
 __all__ = ["ContactSchedule", "Uptake"]
 
@@ -73,6 +74,7 @@ class Uptake:
         self._bearing[:] = 0.0
         self._bearing[active] = bearing
         fresh = bearing < TAKING_UP
-        if fresh.all():
-            return np.full(len(active), np.inf)
+        new = np.count_nonzero(fresh)
+        if new in (0, len(active)):
+            return repeated(np.inf, len(active))
         return np.where(fresh, (bearing / TAKING_UP) ** 2, np.inf)

@@ -22,35 +22,65 @@ class Goal(NamedTuple):
         qpos: (nq,).
         qvel: (nv,).
         qacc: (nv,).
-        com: (3,), m.
-        com_velocity: (3,), m/s.
-        com_acceleration: (3,), m/s^2.
-        angular_momentum: About the CoM, (3,), kg m^2/s.
-        angular_momentum_rate: (3,), N m.
         root_rotation: Of the pelvis, (3, 3).
-        points: Lowest point of each sole, (S, 3), m.
-        point_velocity: (S, 3), m/s.
-        point_acceleration: (S, 3), m/s^2.
+        places: Of the centre of mass and of the lowest point of each sole, (1 + S, 3), m.
+        rates: Velocity (m/s) and acceleration (m/s^2) of the centre of mass, angular momentum about
+            it (kg m^2/s) and its rate (N m), velocities of the points, accelerations of the points,
+            (4 + 2 S, 3).
     """
 
     qpos: Array
     qvel: Array
     qacc: Array
-    com: Array
-    com_velocity: Array
-    com_acceleration: Array
-    angular_momentum: Array
-    angular_momentum_rate: Array
     root_rotation: Array
-    points: Array
-    point_velocity: Array
-    point_acceleration: Array
+    places: Array
+    rates: Array
+
+    @property
+    def com(self) -> Array:
+        """(3,), m."""
+        return np.asarray(self.places[0])
+
+    @property
+    def points(self) -> Array:
+        """Lowest point of each sole, (S, 3), m."""
+        return np.asarray(self.places[1:])
+
+    @property
+    def com_velocity(self) -> Array:
+        """(3,), m/s."""
+        return np.asarray(self.rates[0])
+
+    @property
+    def com_acceleration(self) -> Array:
+        """(3,), m/s^2."""
+        return np.asarray(self.rates[1])
+
+    @property
+    def angular_momentum(self) -> Array:
+        """About the centre of mass, (3,), kg m^2/s."""
+        return np.asarray(self.rates[2])
+
+    @property
+    def angular_momentum_rate(self) -> Array:
+        """(3,), N m."""
+        return np.asarray(self.rates[3])
+
+    @property
+    def point_velocity(self) -> Array:
+        """(S, 3), m/s."""
+        return np.asarray(self.rates[4 : 3 + len(self.places)])
+
+    @property
+    def point_acceleration(self) -> Array:
+        """(S, 3), m/s^2."""
+        return np.asarray(self.rates[3 + len(self.places) :])
 
     def placed(self, place: Placement) -> Goal:
         """The same elsewhere on the floor."""
         rotation = place.rotation()
         turned = rotation.T
-        offset = np.array((*place.offset.tolist(), 0.0))
+        offset = np.array((*place.offset, 0.0))
         qpos, qvel, qacc = self.qpos.copy(), self.qvel.copy(), self.qacc.copy()
         qpos[:3] = rotation @ qpos[:3] + offset
         half = 0.5 * place.yaw
@@ -68,13 +98,7 @@ class Goal(NamedTuple):
             qpos=qpos,
             qvel=qvel,
             qacc=qacc,
-            com=rotation @ self.com + offset,
-            com_velocity=rotation @ self.com_velocity,
-            com_acceleration=rotation @ self.com_acceleration,
-            angular_momentum=rotation @ self.angular_momentum,
-            angular_momentum_rate=rotation @ self.angular_momentum_rate,
             root_rotation=rotation @ self.root_rotation,
-            points=self.points @ turned + offset,
-            point_velocity=self.point_velocity @ turned,
-            point_acceleration=self.point_acceleration @ turned,
+            places=self.places @ turned + offset,
+            rates=self.rates @ turned,
         )

@@ -231,17 +231,16 @@ class Observer:
         """
         data, count = self.plant.data, len(points)
         arms = points - data.subtree_com.take(self._roots, axis=0)
-        shift = np.zeros((count, 18))
-        shift[:, _UNTURNED] = 1.0
-        shift[:, _TURNED] = arms.take(_COMPONENT, axis=1) * -_SIGN
+        shift = arms @ _BESIDE_ONE + _ONE
         jacobians = (shift.reshape(-1, 6) @ data.cdof.T).reshape(count, 3, -1)
         jacobians *= self._carries
-        velocities = (jacobians.reshape(3 * count, -1) @ data.qvel).reshape(-1, 3)
-        acceleration = data.cacc.take(self._bodies, axis=0)
-        turning = np.concatenate([acceleration[:, :3], data.cvel.take(self._bodies, axis=0)[:, :3]])
-        turned = _cross(turning, np.concatenate([arms, velocities]))
+        motion = np.empty((count, 6, 2))
+        motion[:, :, 0] = data.cvel.take(self._bodies, axis=0)
+        motion[:, :, 1] = data.cacc.take(self._bodies, axis=0)
+        carried = shift.reshape(-1, 3, 6) @ motion
+        velocities = carried[:, :, 0].copy()
         # MuJoCo lets the world rise at -g instead of pulling the bodies down.
-        drifts = acceleration[:, 3:] + turned[:count] + turned[count:] + self.model.opt.gravity
+        drifts = carried[:, :, 1] + _cross(motion[:, :3, 0], velocities) + self.model.opt.gravity
         return jacobians, velocities, drifts
 
 
@@ -258,9 +257,7 @@ def _carries(model: mujoco.MjModel, bodies: Indices) -> Array:
 
 def skew(vectors: Array) -> Array:
     """[a] with [a] b = a x b, (N, 3, 3), of vectors (N, 3)."""
-    matrices = np.zeros((len(vectors), 9))
-    matrices[:, _OFF_DIAGONAL] = vectors.take(_COMPONENT, axis=1) * _SIGN
-    return matrices.reshape(-1, 3, 3)
+    return (vectors @ _SKEW).reshape(-1, 3, 3)
 
 
 def _cross(a: Array, b: Array) -> Array:
@@ -270,9 +267,9 @@ def _cross(a: Array, b: Array) -> Array:
 
 
 _NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])
-_OFF_DIAGONAL = np.array([1, 2, 3, 5, 6, 7])
-_COMPONENT = np.array([2, 1, 2, 0, 1, 0])
-_TURNED = np.array([1, 2, 6, 8, 12, 13])
-_UNTURNED = np.array([3, 10, 17])
-"""Where -[r] without its diagonal, and the identity, stand in three rows of six."""
-_SIGN = np.array([-1.0, 1.0, 1.0, -1.0, -1.0, 1.0])
+_SKEW = np.zeros((3, 9))
+_SKEW[[0, 1, 2, 0, 1, 2], [5, 6, 1, 7, 2, 3]] = -1.0, -1.0, -1.0, 1.0, 1.0, 1.0
+"""a @ this is [a], row by row."""
+_BESIDE_ONE = np.concatenate([-_SKEW.reshape(3, 3, 3), np.zeros((3, 3, 3))], axis=2).reshape(3, 18)
+_ONE = np.eye(3, 6, 3).ravel()
+"""a @ the first + the second is [-[a], 1], row by row."""

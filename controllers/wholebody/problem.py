@@ -81,9 +81,11 @@ class WholeBodyProblem:
     def bounds(self) -> Bounds:
         """All bounds on the unknowns together."""
         n = self.instant.size
-        low, high = repeated(-np.inf, n), repeated(np.inf, n)
+        low, high = repeated(-np.inf, n).copy(), repeated(np.inf, n).copy()
         for bounds in self._of(Bounds):
-            low, high = np.maximum(low, bounds.low), np.minimum(high, bounds.high)
+            here = bounds.columns
+            low[here] = np.maximum(low[here], bounds.low)
+            high[here] = np.minimum(high[here], bounds.high)
         return Bounds(low, high)
 
     @cached_property
@@ -98,7 +100,7 @@ class WholeBodyProblem:
     @cached_property
     def programme(self) -> Programme:
         """The whole as matrices."""
-        (low, high), equal, sided = self.bounds, self.equality, self._of(Limits)
+        (low, high, _), equal, sided = self.bounds, self.equality, self._of(Limits)
         return Programme(
             *self.cost,
             np.concatenate([equal.matrix, *(s.matrix for s in sided)]),
@@ -164,7 +166,7 @@ class WholeBodyProblem:
         """The solution if no acceleration and no torque is at its limit."""
         if self.separate is None:
             return None
-        nv, (low, high) = self.instant.nv, self.bounds
+        nv, (low, high, _) = self.instant.nv, self.bounds
         unknowns = eliminated(*self.separate, self.equality, low[nv:], high[nv:])
         if unknowns is None:
             return None
@@ -189,9 +191,13 @@ def _joined(parts: Sequence[Array]) -> Array:
 
 def _outside(limit: Equality | Limits | Bounds, unknowns: Array) -> float:
     """The largest amount by which one constraint is broken, 0 if by none."""
-    if isinstance(limit, Equality):
-        outside = np.abs(limit.matrix @ unknowns - limit.target)
-    else:
-        value = unknowns if isinstance(limit, Bounds) else limit.matrix @ unknowns
-        outside = np.maximum(limit.low - value, value - limit.high)
+    match limit:
+        case Equality():
+            outside = np.abs(limit.matrix @ unknowns - limit.target)
+        case Limits():
+            value = limit.matrix @ unknowns
+            outside = np.maximum(limit.low - value, value - limit.high)
+        case Bounds():
+            value = unknowns[limit.columns]
+            outside = np.maximum(limit.low - value, value - limit.high)
     return float(outside.max(initial=0.0))

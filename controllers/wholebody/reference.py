@@ -56,24 +56,21 @@ class Reference:
         self.point_velocity = self._rate(self.points)
         # One array, so that one interpolation a period serves all of it; what stands still at
         # both ends last.
+        whole = [rate for each in (com_velocity, momentum) for rate in (each, self._whole_rate(each))]
         parts = (
             motion.qpos,
-            com,
-            self.points,
+            np.concatenate([com[:, None], self.points], axis=1),
             motion.qvel,
             motion.qacc,
-            com_velocity,
-            self._whole_rate(com_velocity),
-            momentum,
-            self._whole_rate(momentum),
+            np.stack(whole, axis=1),
             self.point_velocity,
             self._rate(self.point_velocity),
         )
         flat = [part.reshape(count, -1) for part in parts]
         self._table = np.concatenate(flat, axis=1)
         ends = np.cumsum([part.shape[1] for part in flat]).tolist()
-        self._parts = tuple(map(slice, [0, *ends[:-1]], ends))
-        self._moves = self._parts[3].start
+        self._qpos, self._places, self._qvel, self._qacc = map(slice, [0, *ends[:3]], ends[:4])
+        self._rates = slice(ends[3], ends[-1])
         self._times = self.time.tolist()
 
     def _rate(self, values: Array) -> Array:
@@ -89,22 +86,16 @@ class Reference:
         w = min(max((t - times[i]) / (times[i + 1] - times[i]), 0.0), 1.0)
         row = (1 - w) * self._table[i] + w * self._table[i + 1]
         if not 0.0 <= t < times[-1]:
-            row[self._moves :] = 0.0
-        qpos, com, points, qvel, qacc, *rates = (row[part] for part in self._parts)
+            row[self._qvel.start :] = 0.0
+        qpos = row[self._qpos]
         mujoco.mj_normalizeQuat(self.motion.model, qpos)
         return Goal(
             qpos=qpos,
-            qvel=qvel,
-            qacc=qacc,
-            com=com,
-            com_velocity=rates[0],
-            com_acceleration=rates[1],
-            angular_momentum=rates[2],
-            angular_momentum_rate=rates[3],
+            qvel=row[self._qvel],
+            qacc=row[self._qacc],
             root_rotation=_rotation(qpos[3:7]),
-            points=points.reshape(-1, 3),
-            point_velocity=rates[4].reshape(-1, 3),
-            point_acceleration=rates[5].reshape(-1, 3),
+            places=row[self._places].reshape(-1, 3),
+            rates=row[self._rates].reshape(-1, 3),
         )
 
 

@@ -83,10 +83,17 @@ class Limits(NamedTuple):
 
 
 class Bounds(NamedTuple):
-    """Bounds low <= x <= high on the unknowns, (n,) each."""
+    """Bounds low <= x[columns] <= high on unknowns.
+
+    Attributes:
+        low: (C,).
+        high: (C,).
+        columns: Which unknowns, C different ones.
+    """
 
     low: Array
     high: Array
+    columns: Places = EVERYTHING
 
 
 @lru_cache(maxsize=256)

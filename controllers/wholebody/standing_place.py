@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from typing import NamedTuple
 
@@ -22,11 +23,11 @@ class Placement(NamedTuple):
 
     Attributes:
         yaw: rad.
-        offset: (2,), m.
+        offset: Ahead and to the left, m.
     """
 
     yaw: float
-    offset: Array
+    offset: tuple[float, float]
 
     def rotation(self) -> Array:
         """R(yaw), (3, 3)."""
@@ -47,11 +48,11 @@ class StandingPlace:
     """
 
     def __init__(self) -> None:
-        self.value = Placement(0.0, np.zeros(2))
+        self.value = Placement(0.0, (0.0, 0.0))
 
     def reset(self, points: Array, wanted: Array, active: NDArray[np.int64]) -> None:
         """Take the placement as it is now."""
-        self.value = Placement(0.0, np.zeros(2))
+        self.value = Placement(0.0, (0.0, 0.0))
         if len(active):
             self.value = self._towards(points, wanted, active, 1.0, 1.0)
 
@@ -72,22 +73,21 @@ class StandingPlace:
         moving: float,
         turning: float,
     ) -> Placement:
-        there, asked = points[active, :2], wanted[active, :2]
-        centre, middle = (np.add.reduce(each) / len(active) for each in (there, asked))
-        now = self.value.rotation()[:2, :2] @ middle + self.value.offset
-        yaw = self.value.yaw
-        yaw += turning * _angle(_turn(there - centre, asked - middle, yaw) - yaw)
-        place = now + moving * (centre - now)
-        turned = Placement(yaw, self.value.offset).rotation()[:2, :2] @ middle
-        return Placement(yaw, place - turned)
+        there, asked = _over_the_floor(points, active), _over_the_floor(wanted, active)
+        centre, middle = sum(there) / len(there), sum(asked) / len(asked)
+        yaw, offset = self.value.yaw, complex(*self.value.offset)
+        now = cmath.rect(1.0, yaw) * middle + offset
+        spread = [a - middle for a in asked]
+        if sum(abs(s) ** 2 for s in spread) >= _BASE * len(spread):
+            turn = sum(t * s.conjugate() for t, s in zip(there, spread, strict=True))
+            yaw += turning * _angle(cmath.phase(turn) - yaw)
+        offset = now + moving * (centre - now) - cmath.rect(1.0, yaw) * middle
+        return Placement(yaw, (offset.real, offset.imag))
 
 
-def _turn(there: Array, asked: Array, otherwise: float) -> float:
-    """The turn from `asked` to `there`, (A, 2) about their centroids, rad."""
-    if np.vdot(asked, asked) < _BASE * len(asked):
-        return otherwise
-    cross = asked[:, 0] @ there[:, 1] - asked[:, 1] @ there[:, 0]
-    return math.atan2(cross, np.vdot(asked, there))
+def _over_the_floor(points: Array, rows: NDArray[np.int64]) -> list[complex]:
+    """x + iy of some of the points (S, 3): of a dozen numbers quicker than arrays."""
+    return [complex(x, y) for x, y, _ in points.take(rows, axis=0).tolist()]
 
 
 def _angle(turn: float) -> float:

@@ -56,7 +56,9 @@ def plain(problem: WholeBodyProblem) -> qpsolvers.Problem:
     for limit in problem.limits.values():
         match limit:
             case Bounds():
-                low, high = np.maximum(low, limit.low), np.minimum(high, limit.high)
+                here = limit.columns
+                low[here] = np.maximum(low[here], limit.low)
+                high[here] = np.minimum(high[here], limit.high)
             case Limits():
                 above += [limit.matrix, -limit.matrix]
                 most += [limit.high, -limit.low]
@@ -126,7 +128,7 @@ def test_the_cases_meet_limits_and_do_without() -> None:
         torque = problem.limits["torque limits"]
         assert isinstance(torque, Limits)
         given, nv = torque.matrix @ unknowns, problem.instant.nv
-        low, high = problem.bounds
+        low, high, _ = problem.bounds
         slack = min(
             np.min([given - torque.low, torque.high - given]),
             np.min([unknowns[:nv] - low[:nv], high[:nv] - unknowns[:nv]]),
