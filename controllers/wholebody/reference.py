@@ -56,13 +56,13 @@ class Reference:
         self.point_velocity = self._rate(self.points)
         # One array, so that one interpolation a period serves all of it; what stands still at
         # both ends last.
-        whole = [rate for each in (com_velocity, momentum) for rate in (each, self._whole_rate(each))]
+        moved, turned = self._whole_rate(com_velocity), self._whole_rate(momentum)
         parts = (
             motion.qpos,
             np.concatenate([com[:, None], self.points], axis=1),
             motion.qvel,
             motion.qacc,
-            np.stack(whole, axis=1),
+            np.stack([com_velocity, moved, momentum, turned], axis=1),
             self.point_velocity,
             self._rate(self.point_velocity),
         )

@@ -142,8 +142,8 @@ class FootTurnout(_FootRule):
 class OnTheTip(_FootRule):
     """The tip of the toes stands on its mark and the toes carry on the line of the leg: pointe.
 
-    They stand upright under a bent knee or a leg alone, and lean with straight legs that open to
-    both feet, as far as the line from hip to tip does.
+    They stand upright, but with straight legs that open to both feet further than the ankles give:
+    then they lean as far as the line from hip to tip does, and an edge of a pointe shoe bears.
     """
 
     name: ClassVar[str] = "on the tip of the toes"
@@ -155,25 +155,37 @@ class OnTheTip(_FootRule):
     def residual(self, body: SymbolicBody, symbols: Symbols) -> ca.SX:
         tip = body.site(f"{self.side}_toe_tip")
         toes = body.frame(f"{self.side}_toe").rotation[:, 0]
-        place = tip - ca.vertcat(symbols(f"{self.side}_tip", 2), 0)
+        shod = body.has_geom(f"{self.side}_platform_under_inner")
+        height = symbols(f"{self.side}_edge") if shod else 0
+        place = tip - ca.vertcat(symbols(f"{self.side}_tip", 2), height)
         curl = body.joint(f"{self.side}_toe_raise") + radians(POINTE_TOES_DEG)
         return ca.vertcat(place, toes[:2] - symbols(f"{self.side}_lean", 2), curl)
 
     def values(self, target: PoseTarget) -> dict[str, NDArray[np.float64]]:
         side, figure = Side(self.side), target.figure
         leg = target.legs[side]
+        assert isinstance(leg, OnPointe)
         tip = self._footprint(target).point(figure.ball_forward + figure.toe_length)
         lean = np.zeros(2)
         both = all(isinstance(other, Standing | OnPointe) for other in target.legs.values())
-        if both and isinstance(leg, OnPointe) and not leg.knee_bend:
+        if both and not leg.knee_bend:
             c, s = cos(target.facing), sin(target.facing)
             hip = float(figure.hips[side][1]) * np.array([-s, c])
             lean = (tip - centroid(target.support) - hip) / (
                 figure.straight_leg + figure.foot_length
             )
-        return {f"{self.side}_tip": tip, f"{self.side}_lean": lean}
+            lean *= np.linalg.norm(lean) > sin(radians(ANKLE_GIVES_DEG))
+        edge = np.max((tip - leg.soles(figure)) @ lean)
+        return {
+            f"{self.side}_tip": tip,
+            f"{self.side}_lean": lean,
+            f"{self.side}_edge": np.array(edge),
+        }
 
 
+ANKLE_GIVES_DEG = 7.0
+"""How far an ankle on pointe gives sideways so that the whole platform stands: third and fifth need
+no more. In second and fourth it would be a sickled foot, or a leg turned in."""
 POINTE_TOES_DEG = -POINTED_DEG[-1]
 """What the toes add to the ankle so that the line from shin to toe is straight, as in the air."""
 

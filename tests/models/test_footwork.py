@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from enpointe.models import KeyPose, Style, pose_target
+from enpointe.models import KeyPose, KeyPoseSolver, Style, dancer_model, pose_target
 from enpointe.models.contact_geometry import PLATFORM_RISE
 from enpointe.models.leg_target import DEMI_POINTE_DEG, OnPointe, Standing
 from enpointe.models.stances import StanceTracker
@@ -101,6 +101,29 @@ def test_on_pointe_only_the_tips_are_on_the_floor(
             assert part[2] / np.linalg.norm(part) > np.cos(radians(25))
         toes = data.body(f"{side}_toe").xmat.reshape(3, 3)[:, 0]
         assert -toes[2] > np.cos(radians(15))
+
+
+@cache
+def shod() -> KeyPoseSolver:
+    return KeyPoseSolver(dancer_model(flesh=False, pointe_shoes=True))
+
+
+@every(STANCES, ("pointe, straight", "pointe, demi-plié"))
+def test_pointe_shoes_stand_on_the_floor_and_not_in_it(stance: str, floor: str) -> None:
+    """All four corners where the legs hardly lean, an edge in second and fourth."""
+    solver = shod()
+    pose = solver.solve(pose_target(written(*lines_of(stance, floor)), solver.figure))
+    data = at(solver.model, pose.qpos)
+    for side in (Side.LEFT,) if stance == "one foot" else Side:
+        corners = [
+            data.geom(f"{side}_platform_{part}_{edge}").xpos[2]
+            - solver.model.geom(f"{side}_platform_{part}_{edge}").size[0]
+            for part in ("under", "upper")
+            for edge in ("inner", "outer")
+        ]
+        opens = floor.endswith("straight") and stance in ("second", "fourth", "fourth open")
+        assert min(corners) == pytest.approx(0.0, abs=5e-4)
+        assert max(corners) < (0.01 if opens else 5e-4)
 
 
 @pytest.mark.parametrize("floor", ["demi-pointe, straight", "pointe, straight"])
