@@ -91,7 +91,7 @@ class SymbolicBody:
 
     def has_geom(self, name: str) -> bool:
         """Whether the model has a geom of this name: not every dancer wears pointe shoes."""
-        return mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_GEOM, name) >= 0
+        return bool(mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_GEOM, name) >= 0)
 
     def lowest(self, geom: str) -> ca.SX:
         """Height of the lowest point of a sphere geom, m. Raises `ModelError` as `capsule`."""
