@@ -13,6 +13,7 @@ from enpointe.controllers.wholebody.rows import repeated
 __all__ = ["ContactSchedule", "Uptake"]
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
 PLANNED_DOWN = 0.001
 """A sole that the reference has lower than this, m, is on the floor: weight that is counted on
 while a heel is still coming down is missing under the ball, and lets the body drop onto it."""
@@ -44,9 +45,10 @@ class ContactSchedule:
         """Soles planned to bear at `t` seconds, (S,)."""
         return np.asarray(self.planned[max(bisect_right(self._times, t) - 1, 0)])
 
-    def active(self, t: float, clearance: Array) -> NDArray[np.int64]:
-        """Rows of the soles that are planned to bear at `t` and measured on the floor, (A,)."""
-        return (self.at(t) & (clearance < NEAR)).nonzero()[0]
+    def split(self, t: float, clearance: Array) -> tuple[Indices, Indices]:
+        """Rows of the soles that are planned to bear at `t`: those on the floor, and those not."""
+        planned, near = self.at(t), clearance < NEAR
+        return (planned & near).nonzero()[0], (planned > near).nonzero()[0]
 
 
 class Uptake:
@@ -63,12 +65,12 @@ class Uptake:
     def __init__(self, soles: int) -> None:
         self._bearing = np.full(soles, TAKING_UP)
 
-    def reset(self, active: NDArray[np.int64]) -> None:
+    def reset(self, active: Indices) -> None:
         """Those that stand now bear in full."""
         self._bearing[:] = 0.0
         self._bearing[active] = TAKING_UP
 
-    def follow(self, active: NDArray[np.int64], period: float) -> Array:
+    def follow(self, active: Indices, period: float) -> Array:
         """Share of the body's weight that each active sole may bear, (A,); inf for any amount."""
         bearing = self._bearing[active] + period
         self._bearing[:] = 0.0

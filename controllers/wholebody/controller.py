@@ -31,6 +31,7 @@ from enpointe.controllers.wholebody.tasks import (
     AngularMomentum,
     CentreOfMass,
     Contact,
+    Landing,
     Orientation,
     Posture,
     SwingFoot,
@@ -50,6 +51,7 @@ DEFAULT_TASKS: tuple[Task, ...] = (
     CentreOfMass(),
     AngularMomentum(),
     Contact(),
+    Landing(),
     Orientation(),
     Posture(),
     SwingFoot(),
@@ -147,7 +149,7 @@ class WholeBody:
         self.workload = Workload()
         self.problem = self.unknowns = None
         self._observer.place(state.qpos, state.qvel)
-        active = self._schedule.active(0.0, self._observer.clearance())
+        active, _ = self._schedule.split(0.0, self._observer.clearance())
         self._place.reset(self._observer.points(), self._reference.points[0], active)
         self._uptake.reset(active)
         self._torque[:] = 0.0
@@ -173,8 +175,9 @@ class WholeBody:
     def build(self, t: float, state: State) -> WholeBodyProblem:
         """The programme at `t` seconds in `state`, not yet solved."""
         self._observer.place(state.qpos, state.qvel)
-        active = self._schedule.active(t, self._observer.clearance())
-        instant = self._observer.instant(active, self._uptake.follow(active, self._period))
+        active, due = self._schedule.split(t, self._observer.clearance())
+        capacity = self._uptake.follow(active, self._period)
+        instant = self._observer.instant(active, capacity, due)
         goal = self._reference.at(t)
         place = self._place.follow(instant.points, goal.points, active, self._period)
         return WholeBodyProblem.build(instant, goal.placed(place), self.tasks, self.constraints)

@@ -16,6 +16,7 @@ __all__ = ["Instant", "Observer", "skew"]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
+_NONE: Indices = np.empty(0, dtype=np.int64)
 
 
 @dataclass(frozen=True)
@@ -41,6 +42,7 @@ class Instant:
         jacobians: Of those points, (S, 3, nv).
         drifts: Their accelerations at qacc = 0, J' v, (S, 3), m/s^2.
         active: Rows of `soles` that may bear force, (A,).
+        due: Rows of `soles` that are meant to bear force and are off the floor.
         capacity: Share of the body's weight that each active sole may bear, (A,); inf for any.
         edges: Directions of the forces' generators, (E, 3), sole by sole as in `active`.
         edge_point: Row of `soles` of each generator, (E,).
@@ -65,6 +67,7 @@ class Instant:
     jacobians: Array
     drifts: Array
     active: Indices
+    due: Indices
     capacity: Array
     edges: Array
     edge_point: Indices
@@ -182,12 +185,15 @@ class Observer:
         points[:, 2] -= self._radius
         return np.asarray(points)
 
-    def instant(self, active: Indices, capacity: Array | None = None) -> Instant:
+    def instant(
+        self, active: Indices, capacity: Array | None = None, due: Indices = _NONE
+    ) -> Instant:
         """The state placed last, with the given rows of `soles` able to bear force.
 
         Args:
             active: Rows of `soles`, (A,).
             capacity: Share of the body's weight that each may bear, (A,); any amount if None.
+            due: Rows of `soles` that are meant to and can't yet.
         """
         model, data, nv = self.model, self.plant.data, self.model.nv
         mass_matrix = np.zeros((nv, nv))
@@ -210,6 +216,7 @@ class Observer:
             jacobians=jacobians,
             drifts=drifts,
             active=active,
+            due=due,
             capacity=repeated(np.inf, len(active)) if capacity is None else capacity,
             edges=self._edges[: 4 * len(active)],
             edge_point=np.repeat(active, 4),

@@ -14,7 +14,7 @@ from enpointe.controllers.wholebody.goal import Goal
 from enpointe.controllers.wholebody.problem import WholeBodyProblem
 from enpointe.controllers.wholebody.reference import Reference
 from enpointe.controllers.wholebody.standing_place import Placement, StandingPlace
-from enpointe.controllers.wholebody.tasks import Contact
+from enpointe.controllers.wholebody.tasks import Contact, Landing
 
 from .wholebody_cases import FIRST, MODEL, RETIRE, RETIRE_DEMI, driver, held, observed, state
 
@@ -110,6 +110,26 @@ def test_a_sole_that_hovers_is_brought_down() -> None:
         asked = asked + instant.drifts[active]
         np.testing.assert_allclose(asked[:, :2], 0.0, atol=1e-9)
         assert np.all(asked[:, 2] < -0.3) if sinks else np.allclose(asked[:, 2], 0.0, atol=0.3)
+
+
+def test_heels_that_a_push_lifted_come_down() -> None:
+    motion, controller = held(FIRST), driver(FIRST)
+    qpos = motion.qpos[0].copy()
+    for side in ("left", "right"):
+        # Up onto the balls, by as much at the toes as at the ankles: the body stays upright.
+        for joint, angle in ((f"{side}_toe_raise", 0.1), (f"{side}_ankle_point", 0.1)):
+            qpos[MODEL.joint(joint).qposadr[0]] += angle
+    controller.reset(state(qpos, np.zeros(MODEL.nv)))
+    problem = controller.build(0.0, state(qpos, np.zeros(MODEL.nv)))
+    instant = problem.instant
+    assert set(instant.due) | set(instant.active) == set(ALL)
+    assert len(instant.due) > 0
+    unknowns = problem.solve()
+    assert unknowns is not None
+    falling = instant.jacobians[instant.due, 2] @ unknowns[: instant.nv]
+    assert np.all(falling + instant.drifts[instant.due, 2] < -1.0)
+    asked = Landing().rows(instant, goal(FIRST))
+    np.testing.assert_allclose(asked.target, -900.0 * instant.points[instant.due, 2], atol=1e-9)
 
 
 def test_weight_comes_onto_a_heel_little_by_little() -> None:

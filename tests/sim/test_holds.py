@@ -70,11 +70,13 @@ def test_pd_falls_where_the_whole_body_stands() -> None:
     assert measure(danced(motion, PD(motion))).fell_at is not None
 
 
-@pytest.mark.parametrize(("share", "stands"), [(0.7, True), (2.0, False)])
-def test_a_push_to_the_left_is_taken_up_to_what_the_foot_can_take(
-    share: float, stands: bool
+@pytest.mark.parametrize(
+    ("pose", "share", "stands"), [(RETIRE, 0.7, True), (RETIRE, 2.0, False), (FIRST, 1.0, True)]
+)
+def test_a_push_to_the_left_is_taken_up_to_what_the_feet_can_take(
+    pose: str, share: float, stands: bool
 ) -> None:
-    motion = held(RETIRE, 2.5)
+    motion = held(pose, 3.2)
     plant = Plant(motion.model)
     plant.place(motion.qpos[0])
     hull = support_hull(plant.data.geom_xpos[plant.soles_on_floor()][:, :2])
