@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import importlib.util
-import sys
+import importlib
+from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
 
@@ -17,14 +17,10 @@ from enpointe.hardware.emulator import FaultKind
 
 
 @pytest.fixture(scope="module")
-def campaign(root_dir: Path) -> ModuleType:
-    spec = importlib.util.spec_from_file_location("faults", root_dir / "benchmarks" / "faults.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules["faults"] = module
-    spec.loader.exec_module(module)
-    return module
+def campaign(root_dir: Path) -> Iterator[ModuleType]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(root_dir / "benchmarks"))
+        yield importlib.import_module("faults")
 
 
 @pytest.mark.slow
