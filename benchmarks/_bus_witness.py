@@ -101,8 +101,8 @@ class Witness:
         """Servos that still follow goals."""
         found = []
         for servo in self.bus.servos:
-            unpowered = self.faults.missing(servo.id, now)
+            powered = servo.powered and not self.faults.missing(servo.id, now)
             stopped = servo.memory["Bus Watchdog"] == _TRIPPED
-            if servo.torque_on and not unpowered and not stopped:
+            if servo.torque_on and powered and not stopped:
                 found.append(f"servo {servo.id}")
         return found

@@ -2,7 +2,9 @@
 
 Sync reads carry one bit that says "an alarm"; what it is stands in Hardware Error Status(70), read
 here, of one servo a cycle. Between alarms the cycles go round all servos, each in turn for its
-errors and for its heat and supply, so that an alarm whose bit were lost would show as well.
+errors and for its heat and supply, so that an alarm whose bit were lost would show as well. Before
+all that a servo that was silent for some frames is asked whether its torque is on: one whose cable
+lost contact for a moment has booted since, and hangs loose among the others.
 """
 
 from __future__ import annotations
@@ -13,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from enpointe.hardware.control_table import Register
+from enpointe.hardware.dynamixel.frames import Frame
 from enpointe.hardware.dynamixel.link import Link
 from enpointe.hardware.hardware_error import HardwareError
 from enpointe.hardware.units import TENTH_VOLT
@@ -21,6 +24,8 @@ __all__ = ["Health"]
 
 Array = NDArray[np.float64]
 _UNKNOWN = -1
+_SILENT = 2
+"""Frames missed in a row by one who may have lost power: a boot takes longer."""
 
 
 class Health:
@@ -36,6 +41,7 @@ class Health:
         temperature: (n,) degrees Celsius, as last read.
         voltage: (n,) V.
         temperature_limit: (n,) degrees Celsius.
+        loose: (n,) whose torque was found to be off.
     """
 
     def __init__(
@@ -55,7 +61,10 @@ class Health:
             registers["Present Input Voltage"],
             registers["Present Temperature"],
         )
+        self._torque = registers["Torque Enable"]
         self._errors = np.full(len(ids), _UNKNOWN)
+        self.loose = np.zeros(len(ids), dtype=bool)
+        self._missed = np.zeros(len(ids), dtype=np.int64)
         self._turn = 0
         self._alarm = 0
 
@@ -69,16 +78,23 @@ class Health:
         found = int(self._errors[place])
         return HardwareError(found) if found > 0 else None
 
-    def step(self, alert: NDArray[np.bool_]) -> None:
+    def step(self, frame: Frame) -> None:
         """Read one register of one servo.
 
         Args:
-            alert: (n,) whose sync answers say that they have an alarm.
+            frame: The newest: who was silent, and whose answer says that he has an alarm.
 
         Raises:
             PortLostError: The port is gone.
         """
-        alarmed = np.flatnonzero(alert)
+        doubtful = self._missed >= _SILENT
+        self._missed[~doubtful & frame.fresh] = 0
+        self._missed[~frame.fresh] += 1
+        returned = np.flatnonzero(doubtful & frame.fresh)
+        if len(returned):
+            self._read_torque(int(returned[0]))
+            return
+        alarmed = np.flatnonzero(frame.alert)
         if len(alarmed):
             unnamed = [place for place in alarmed if self._errors[place] <= 0]
             candidates = unnamed or list(alarmed)
@@ -91,6 +107,12 @@ class Health:
             self._read_errors(place)
         else:
             self._read_heat(place)
+
+    def _read_torque(self, place: int) -> None:
+        value = self._link.read(self._ids[place], self._torque, tries=1)
+        if value is not None:
+            self.loose[place] = value == 0
+            self._missed[place] = 0
 
     def _read_errors(self, place: int) -> None:
         value = self._link.read(self._ids[place], self._status, tries=1)

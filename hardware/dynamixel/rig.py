@@ -265,7 +265,7 @@ class ServoRig:
         )
         self._sent_at = now
         self._frame = self._reader.read()
-        self._health.step(self._frame.alert)
+        self._health.step(self._frame)
         self._busy = self.clock.now() - now
         # The answer is to the goal before: this one has not had its period yet.
         error = self._codec.angle(before) - self._codec.angle(self._frame.position)

@@ -113,6 +113,7 @@ class Supervisor:
         found = [
             *self._alarms(frame, health, now),
             *self._silence(frame),
+            *self._loose(health),
             *self._strain(frame, error, now),
             *self._loss(),
             *self._heat(health),
@@ -146,6 +147,13 @@ class Supervisor:
                 Severity.OFF,
                 f"no answer for {self._limits.silence:g} s from servo {who}{more}; look at cables"
                 " and power",
+            )
+
+    def _loose(self, health: Health) -> Iterator[Verdict]:
+        for place in np.flatnonzero(health.loose):
+            yield Verdict(
+                Severity.OFF,
+                f"servo {self._names[place]} was silent, and has let go; look at its cable",
             )
 
     def _strain(self, frame: Frame, error: Array, now: float) -> Iterator[Verdict]:

@@ -23,7 +23,7 @@ __all__ = ["BOOT_SECONDS", "FIRMWARE", "Servo"]
 FIRMWARE = 52
 """Version that an emulated servo has unless told otherwise."""
 BOOT_SECONDS = 0.1
-"""Ours: how long a servo is deaf after a reboot."""
+"""Ours: how long a servo is deaf after a reboot, or after its power came."""
 
 _TORQUE_ON_BY_GOAL = 0x08
 _TORQUE_AT_START, _RAM_AT_START = 0x01, 0x02
@@ -93,6 +93,11 @@ class Servo:
         return self.memory.values["Torque Enable"] == 1
 
     @property
+    def powered(self) -> bool:
+        """Whether its supply is enough for its processor."""
+        return not self._starved
+
+    @property
     def return_delay(self) -> float:
         """s before it answers."""
         return self.memory["Return Delay Time"] * RETURN_DELAY
@@ -152,7 +157,7 @@ class Servo:
         """Whether the processor is without power; when it comes back, it boots."""
         starved = supply < _BROWN_OUT * self.model.voltage_limits[0]
         if self._starved and not starved:
-            self._boot()
+            self.reboot()
         self._starved = starved
         return starved
 

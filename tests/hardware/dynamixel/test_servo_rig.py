@@ -13,6 +13,7 @@ from enpointe.controllers.protocol import Body
 from enpointe.errors import RigError
 from enpointe.hardware.dynamixel import Ending, SafetyLimits, ServoRig, StopButton
 from enpointe.hardware.emulator import Fault, FaultKind, Written
+from enpointe.hardware.emulator import servo as emulated
 
 from .benches import Bench, ask, bench, small_rig, swing
 
@@ -185,6 +186,24 @@ def test_a_grave_fault_lets_go_in_time_and_says_who(fault: Fault, who: str) -> N
         unpowered = fault.kind is FaultKind.MISSING and servo.id in fault.ids
         shut = servo.protection.shut
         assert unpowered or shut or 1.0 < off[servo.id] <= 1.2
+
+
+@pytest.mark.parametrize("fast", [True, False])
+def test_a_cable_that_lost_contact_for_a_moment_is_noticed(
+    fast: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The servo boots quicker than the rig bears silence, and would hang loose in the dance."""
+    monkeypatch.setattr(emulated, "BOOT_SECONDS", 0.02)
+    contact = Fault(FaultKind.MISSING, (2,), AT, duration=(0.02, 0.02))
+    made = bench(small_rig(fast_read=fast), faults=[contact])
+    with made.servo() as body:
+        body.start(np.zeros(3))
+        swing(body, 3.0)
+        assert body.fault is not None
+        assert "joint_2" in body.fault
+        assert "has let go" in body.fault
+    assert made.clock.now() < AT[0] + 0.2
+    assert not any(made.torque())
 
 
 def test_unplugged_servos_are_stopped_by_their_own_watchdogs_and_it_is_said() -> None:

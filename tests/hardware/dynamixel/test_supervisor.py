@@ -32,6 +32,7 @@ def health(errors: int = 0, temperature: float = 30.0) -> Any:
         errors=lambda place: HardwareError(int(status[place])) if status[place] else None,
         temperature=np.array([temperature, np.nan]),
         temperature_limit=np.array([80.0, 80.0]),
+        loose=np.zeros(2, dtype=bool),
     )
 
 
