@@ -83,12 +83,14 @@ class Footing:
     Attributes:
         standing: (T,), whether it stands.
         laid: (T,), 1 where it stands, falling to 0 in the air.
+        moved: (T, 2), m, how far a mark is from the dancer's own, on this body's scale.
         ankle: (T, 3), m; where it does not stand, on the way from one footprint to the next.
         turn: (T, 3, 3), of the foot.
     """
 
     standing: Mask
     laid: Array
+    moved: Array
     ankle: Array
     turn: Array
 
@@ -99,6 +101,7 @@ def footings(
     body: Body,
     scale: float,
     rate: float,
+    aside: dict[str, Array] | None = None,
 ) -> dict[str, Footing]:
     """Footings of both feet.
 
@@ -108,11 +111,17 @@ def footings(
         body: Whose feet are to stand.
         scale: Its size over the dancer's.
         rate: Samples a second.
+        aside: By side, (T, 2), m: marks are moved by so much more, alike through a stretch of
+            standing, because limbs are in each other's way.
     """
     soles = {side: Sole.of(body, side) for side in SIDES}
     balls = {side: scale * feet[side][0][:, :2] for side in SIDES}
     yaws = {side: _headings(feet[side][1], standing[side]) for side in SIDES}
+    _settle(balls, standing)
+    drawn = {side: ball.copy() for side, ball in balls.items()}
     _stand_clear(balls, yaws, standing, soles)
+    for side in SIDES if aside is not None else ():
+        balls[side] += aside[side]
     made = {}
     for side in SIDES:
         rise = _risen(feet[side][2], standing[side], soles[side].rise)
@@ -122,7 +131,9 @@ def footings(
         turn = Rotation.from_euler("ZY", np.column_stack([yaw, rise])).as_matrix()
         edge = np.column_stack([place, np.full(len(place), soles[side].radius)])
         laid = ramped(standing[side], _SETTLE, rate)
-        made[side] = Footing(standing[side], laid, edge - turn @ soles[side].edge, turn)
+        moved = np.where(standing[side][:, None], balls[side] - drawn[side], 0.0)
+        ankle = edge - turn @ soles[side].edge
+        made[side] = Footing(standing[side], laid, moved, ankle, turn)
     return made
 
 
@@ -154,17 +165,23 @@ def _led(track: Array, standing: Mask) -> Array:
     return np.asarray(np.column_stack(led).reshape(track.shape))
 
 
+def _settle(balls: dict[str, Array], standing: dict[str, Mask]) -> None:
+    """Give every stretch of standing one place."""
+    for side in SIDES:
+        for run in runs(standing[side]):
+            balls[side][run] = np.median(balls[side][run], axis=0)
+
+
 def _stand_clear(
     balls: dict[str, Array],
     yaws: dict[str, Array],
     standing: dict[str, Mask],
     soles: dict[str, Sole],
 ) -> None:
-    """Give every stretch of standing its place, in place, out of the other foot's way."""
+    """Move every stretch of standing, in place, out of the other foot's way."""
     order = sorted((run.start, side, run) for side in SIDES for run in runs(standing[side]))
     taken: dict[str, list[slice]] = {side: [] for side in SIDES}
     for _, side, run in order:
-        balls[side][run] = np.median(balls[side][run], axis=0)
         other = SIDES[1 - SIDES.index(side)]
         for beside in taken[other]:
             first, last = max(run.start, beside.start), min(run.stop, beside.stop)

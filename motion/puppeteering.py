@@ -4,9 +4,11 @@ Directions are carried over, not angles: of upper arms and forearms, thighs and 
 trunk and head. What stands on the floor keeps standing, on a mark of the body's own size; where two
 feet would be in each other's way there, the one that comes later stands beside the other. Heels
 rise as far as the foot has a second sole to stand on (`Sole.rise`), and not at all if it has none.
-Every sample is posed by differential inverse kinematics (mink) within the joints' ranges; joints
-that both bodies have by one name follow the dancer's angles where nothing else asks. Then the
-weight is planned (`plan_weight`), and every sample posed again with its centre of mass there.
+Every sample is posed by differential inverse kinematics (mink) within the joints' ranges and with
+limbs out of one another; where legs are so thick that feet can't come to their marks, the marks go
+apart. Joints that both bodies have by one name follow the dancer's angles where nothing else asks. Then the
+weight is planned (`plan_weight`), for the tempo and for all that are slower, as a body of servos
+often needs more time, and every sample posed again with its centre of mass there.
 
 What is lost: joints that the body has not, of the puppet waist tilt, forearm, wrist, ankle turn and
 toe; of OP3 also the waist, a shoulder and neck axis each, and demi-pointe.
@@ -28,8 +30,10 @@ from enpointe.models.soles import sole_geoms, sole_points
 from enpointe.motion.averaging import averaged_qpos
 from enpointe.motion.contact_schedule import ContactSchedule, contact_schedule
 from enpointe.motion.footprints import Footing, footings
+from enpointe.motion.limbs_apart import LimbsApart
 from enpointe.motion.motion import Motion
 from enpointe.motion.retargeting.body import Body
+from enpointe.motion.retargeting.holding import runs
 from enpointe.motion.retargeting.landmarks import sided
 from enpointe.motion.retargeting.posing import Directions
 from enpointe.motion.weight_plan import WeightPlan, plan_weight
@@ -42,17 +46,26 @@ RATE = 100.0
 _DT = 1.0
 _FIRST, _EACH = 60, 3
 _PELVIS, _TORSO, _HEAD = 2.0, 1.5, 0.7
+_TURNOUT = 0.3
+_THIGHS = ("left_thigh", "right_thigh")
 _ROOT = 4.0
 _ROOT_BALANCED = (0.2, 0.2, 4.0)
 _WEIGHT = (20.0, 20.0, 0.0)
 _PLANTED, _FREE = 60.0, 1.5
 _LAID, _LOOSE = 6.0, 0.25
 _BRUSH, _OVER_FLOOR = 0.004, 15.0
+_APART = 200.0
+_KNEE = 0.8
+"""Cost of a knee that is not bent as the dancer's, 1/rad: legs straight where hers are, though
+feet farther apart pull them askew."""
 _SHARED, _POSTURE = 0.12, 0.02
 _STEADY = 0.12
 _TOUCHES = 0.002
 """m above the floor at which a sole of a standing foot bears."""
-_KINKS = 0.05
+_ON_MARK = 5e-4
+"""m that a foot may stand beside its mark, before the mark goes to where it can stand."""
+_OPENINGS = 6
+_KINKS = 0.12
 """s: kinks where feet come and go are averaged away over this width."""
 
 
@@ -65,12 +78,15 @@ class Puppeteered:
         contacts: Which soles bear, and when.
         weight: Where its centre of mass was planned to be; None if it was not.
         scale: Length of its legs over the dancer's.
+        opened: m, how much farther from each other its feet stand than the dancer's on its scale,
+            at most: its feet or legs are too thick for the position.
     """
 
     motion: Motion
     contacts: ContactSchedule
     weight: WeightPlan | None
     scale: float
+    opened: float
 
 
 def puppeteer(
@@ -105,6 +121,7 @@ def puppeteer(
     for side in SIDES:
         mine = np.isin(owner, [dancer.bodies[f"{side}_{part}"] for part in ("foot", "toe")])
         standing[side] = np.asarray(bears[:, mine].any(axis=1), dtype=bool)
+    aside = {side: np.zeros((len(time), 2)) for side in SIDES}
     feet = footings(source.feet, standing, body, scale, RATE)
     poser = _Poser(source, body, scale, feet)
 
@@ -115,10 +132,43 @@ def puppeteer(
 
     weight = None
     made, contacts = pose(None)
+    for _ in range(_OPENINGS):
+        if not _opened(aside, made, feet):
+            break
+        feet = footings(source.feet, standing, body, scale, RATE, aside)
+        poser = _Poser(source, body, scale, feet)
+        made, contacts = pose(None)
     if balanced:
-        weight = plan_weight(made, contacts, made)
+        weight = plan_weight(made, contacts, made, slower=True)
         made, contacts = pose(weight)
-    return Puppeteered(made, contacts, weight, scale)
+    return Puppeteered(made, contacts, weight, scale, _opening(feet))
+
+
+def _opened(aside: dict[str, Array], made: Motion, feet: dict[str, Footing]) -> bool:
+    """Move marks, in place, to where feet can stand; whether any had to be moved."""
+    model = made.model
+    data = mujoco.MjData(model)
+    off = {side: np.zeros((len(made.time), 2)) for side in SIDES}
+    for i, qpos in enumerate(made.qpos):
+        data.qpos[:] = qpos
+        mujoco.mj_kinematics(model, data)
+        for side in SIDES:
+            if feet[side].standing[i]:
+                off[side][i] = (data.site(f"{side}_ankle").xpos - feet[side].ankle[i])[:2]
+    far = False
+    for side in SIDES:
+        for run in runs(feet[side].standing):
+            away = np.linalg.norm(off[side][run], axis=1)
+            if away.max() > _ON_MARK:
+                aside[side][run] += off[side][run][away.argmax()]
+                far = True
+    return far
+
+
+def _opening(feet: dict[str, Footing]) -> float:
+    both = feet["left"].standing & feet["right"].standing
+    apart = feet["left"].moved - feet["right"].moved
+    return float(np.linalg.norm(apart[both], axis=1).max(initial=0.0))
 
 
 class _Source:
@@ -131,6 +181,7 @@ class _Source:
         segments = dancer.segments
         self.directions = {name: np.empty((len(qpos), 3)) for name in segments}
         self.frames = {part: np.empty((len(qpos), 3, 3)) for part in dancer.bodies}
+        self.thighs = {thigh: np.empty((len(qpos), 3, 3)) for thigh in _THIGHS}
         sites = sided("hip", "ankle", "ball")
         self.points = {name: np.empty((len(qpos), 3)) for name in sites}
         self.pelvis = np.empty((len(qpos), 3))
@@ -144,6 +195,8 @@ class _Source:
                 self.directions[name][i] = (data.site_xpos[end] - data.site_xpos[start]) / length
             for part, frames in self.frames.items():
                 frames[i] = data.xmat[dancer.bodies[part]].reshape(3, 3)
+            for thigh, frames in self.thighs.items():
+                frames[i] = data.body(thigh).xmat.reshape(3, 3)
             for name, points in self.points.items():
                 points[i] = data.site(name).xpos
             self.pelvis[i] = data.xpos[dancer.bodies["pelvis"]]
@@ -174,13 +227,16 @@ class _Poser:
             part: mink.FrameTask(part, "body", 0.0, cost)
             for part, cost in (("pelvis", _PELVIS), ("torso", _TORSO), ("head", _HEAD))
         }
+        self._turned |= {thigh: mink.FrameTask(thigh, "body", 0.0, _TURNOUT) for thigh in _THIGHS}
         self._pelvis = self._turned["pelvis"]
         self._soles = {s: mink.FrameTask(f"{s}_foot", "body", _FREE, _LOOSE) for s in SIDES}
+        self._like_hers = _like_hers(model, source.angles)
         self._posture = mink.PostureTask(model, cost=self._posture_cost())
         self._com = mink.ComTask(_WEIGHT)
         steady = mink.DampingTask(model, cost=np.full(model.nv, _STEADY))
         self._tasks = [
             self._directions, *self._turned.values(), *self._soles.values(), self._posture, steady,
+            LimbsApart(model, _APART),
         ]  # fmt: skip
         self._pose = body.rest.copy()
         data = mujoco.MjData(model)
@@ -228,6 +284,9 @@ class _Poser:
         for part in ("torso", "head"):
             rotation = mink.SO3.from_matrix(source.frames[part][i])
             self._turned[part].set_target(mink.SE3.from_rotation(rotation))
+        for part in _THIGHS:
+            rotation = mink.SO3.from_matrix(source.thighs[part][i])
+            self._turned[part].set_target(mink.SE3.from_rotation(rotation))
         turn = source.frames["pelvis"][i]
         ankles, shares = {}, {}
         for side in SIDES:
@@ -263,20 +322,35 @@ class _Poser:
     def _like(self, i: int) -> Array:
         """The dancer's own angles, in the joints that both have."""
         model, pose = self._body.model, self._pose
-        for joint in range(1, model.njnt):
-            angles = self._source.angles.get(model.joint(joint).name)
-            if angles is not None:
-                pose[model.jnt_qposadr[joint]] = np.clip(angles[i], *model.jnt_range[joint])
+        for joint, (name, sign, _) in self._like_hers.items():
+            angle = sign * self._source.angles[name][i]
+            pose[model.jnt_qposadr[joint]] = np.clip(angle, *model.jnt_range[joint])
         return pose
 
     def _posture_cost(self) -> Array:
         model = self._body.model
         cost = np.full(model.nv, _POSTURE)
         cost[:6] = 0.0
-        for joint in range(1, model.njnt):
-            if model.joint(joint).name in self._source.angles:
-                cost[model.jnt_dofadr[joint]] = _SHARED
+        for joint, (_, _, own) in self._like_hers.items():
+            cost[model.jnt_dofadr[joint]] = own
         return cost
+
+
+def _like_hers(
+    model: mujoco.MjModel, angles: dict[str, Array]
+) -> dict[int, tuple[str, float, float]]:
+    """Joints that the dancer has as well: by which name, sign and cost. Knees whatever their name:
+    they bend to where there is more room."""
+    found = {
+        joint: (name, 1.0, _SHARED)
+        for joint in range(1, model.njnt)
+        if (name := model.joint(joint).name) in angles
+    }
+    for side in SIDES:
+        joint = int(model.body_jntadr[model.body(f"{side}_shank").id])
+        sign = 1.0 if model.jnt_range[joint].sum() > 0.0 else -1.0
+        found[joint] = (f"{side}_knee_bend", sign, _KNEE)
+    return found
 
 
 def _contacts(motion: Motion, body: Body, feet: dict[str, Footing]) -> ContactSchedule:
