@@ -120,8 +120,8 @@ def footings(
     _settle(balls, standing)
     drawn = {side: ball.copy() for side, ball in balls.items()}
     _stand_clear(balls, yaws, standing, soles)
-    for side in SIDES if aside is not None else ():
-        balls[side] += aside[side]
+    for side, more in ({} if aside is None else aside).items():
+        balls[side] += more
     made = {}
     for side in SIDES:
         rise = _risen(feet[side][2], standing[side], soles[side].rise)

@@ -7,60 +7,55 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["LimbsApart"]
+__all__ = ["RECOVERY", "LimbsApart"]
 
 Array = NDArray[np.float64]
-_APART = 0.005
-"""m: nearer than this, limbs push each other away. What else is asked makes up for some of it."""
+RECOVERY = 0.004
+"""m a step: so fast something leaves where it must not be."""
+_APART = 0.003
+"""m between limbs: kinks are averaged away afterwards, which may bring them nearer."""
+_SEEN = 0.03
+"""m at which a limb takes notice of another."""
+_GAIN = 0.8
+"""Share of the room between two limbs that one step may take: distances curve."""
 
 
-class LimbsApart(mink.Task):
-    """max(0, apart - d) of every pair of limbs that would meet in the engine, d their distance.
+class LimbsApart(mink.Limit):
+    """No two limbs that would meet in the engine come nearer than 3 mm; those that are, part.
 
     Pairs are those that collide by the model's own masks, parents and exclusions; soles and floors
-    are none of them, as where feet stand is planned elsewhere. A cost and not a constraint: a pose
-    that begins with limbs in one another still comes apart, and a body that can't part them is
-    posed all the same.
+    are none of them. Unlike mink's own limit, limbs that begin in one another come apart again.
 
     Args:
         model: The body.
-        cost: 1/m.
     """
 
-    def __init__(self, model: mujoco.MjModel, cost: float) -> None:
+    def __init__(self, model: mujoco.MjModel) -> None:
         self._pairs = _meeting(model)
-        super().__init__(cost=np.full(max(len(self._pairs), 1), cost))
-        self._reach = model.geom_rbound[self._pairs].sum(axis=1) + _APART
+        self._reach = model.geom_rbound[self._pairs].sum(axis=1) + _SEEN
         self._bodies = model.geom_bodyid[self._pairs]
 
-    def compute_error(self, configuration: mink.Configuration) -> Array:
-        return self._near(configuration, None)
-
-    def compute_jacobian(self, configuration: mink.Configuration) -> Array:
-        rows = np.zeros((len(self.cost), configuration.model.nv))
-        self._near(configuration, rows)
-        return rows
-
-    def _near(self, configuration: mink.Configuration, rows: Array | None) -> Array:
-        """How much is missing of each pair; `rows` are given its Jacobian."""
+    def compute_qp_inequalities(
+        self, configuration: mink.Configuration, dt: float
+    ) -> mink.Constraint:
+        """n (J_1 - J_2) dq <= gain (d - apart), n from the first limb to the second."""
         model, data = configuration.model, configuration.data
-        missing = np.zeros(len(self.cost))
+        rows: list[Array] = []
+        room: list[float] = []
         ends, one, other = np.empty(6), np.empty((3, model.nv)), np.empty((3, model.nv))
         places = data.geom_xpos[self._pairs]
         away = np.linalg.norm(places[:, 0] - places[:, 1], axis=1)
         for k in np.flatnonzero(away < self._reach).tolist():
             first, second = self._pairs[k].tolist()
-            distance = mujoco.mj_geomDistance(model, data, first, second, _APART, ends)
-            if distance >= _APART:
-                continue
-            missing[k] = _APART - distance
-            if rows is None:
+            distance = mujoco.mj_geomDistance(model, data, first, second, _SEEN, ends)
+            if distance >= _SEEN:
                 continue
             way = (ends[3:] - ends[:3]) / (distance or 1.0)
             mujoco.mj_jac(model, data, one, None, ends[:3], int(self._bodies[k, 0]))
             mujoco.mj_jac(model, data, other, None, ends[3:], int(self._bodies[k, 1]))
-            rows[k] = -way @ (other - one)
-        return missing
+            rows.append(way @ (one - other))
+            room.append(max(_GAIN * (distance - _APART), -RECOVERY))
+        return mink.Constraint(np.array(rows), np.array(room)) if rows else mink.Constraint()
 
 
 def _meeting(model: mujoco.MjModel) -> NDArray[np.int64]:

@@ -4,11 +4,12 @@ Directions are carried over, not angles: of upper arms and forearms, thighs and 
 trunk and head. What stands on the floor keeps standing, on a mark of the body's own size; where two
 feet would be in each other's way there, the one that comes later stands beside the other. Heels
 rise as far as the foot has a second sole to stand on (`Sole.rise`), and not at all if it has none.
-Every sample is posed by differential inverse kinematics (mink) within the joints' ranges and with
-limbs out of one another; where legs are so thick that feet can't come to their marks, the marks go
-apart. Joints that both bodies have by one name follow the dancer's angles where nothing else asks. Then the
-weight is planned (`plan_weight`), for the tempo and for all that are slower, as a body of servos
-often needs more time, and every sample posed again with its centre of mass there.
+Every sample is posed by differential inverse kinematics (mink) within the joints' ranges, limbs out
+of one another and feet in the air over the floor. Where legs are so thick that feet can't come to
+their marks, the marks go apart (`Puppeteered.opened`). Joints that both bodies have by one name
+follow the dancer's angles where nothing else asks. Then the weight is planned (`plan_weight`), for
+the tempo and for all that are slower, since a body of servos often needs more time, and every
+sample posed again with its centre of mass there.
 
 What is lost: joints that the body has not, of the puppet waist tilt, forearm, wrist, ankle turn and
 toe; of OP3 also the waist, a shoulder and neck axis each, and demi-pointe.
@@ -29,6 +30,7 @@ from enpointe.models.anatomy import SIDES
 from enpointe.models.soles import sole_geoms, sole_points
 from enpointe.motion.averaging import averaged_qpos
 from enpointe.motion.contact_schedule import ContactSchedule, contact_schedule
+from enpointe.motion.feet_over_floor import FeetOverFloor
 from enpointe.motion.footprints import Footing, footings
 from enpointe.motion.limbs_apart import LimbsApart
 from enpointe.motion.motion import Motion
@@ -53,8 +55,8 @@ _ROOT_BALANCED = (0.2, 0.2, 4.0)
 _WEIGHT = (20.0, 20.0, 0.0)
 _PLANTED, _FREE = 60.0, 1.5
 _LAID, _LOOSE = 6.0, 0.25
-_BRUSH, _OVER_FLOOR = 0.004, 15.0
-_APART = 200.0
+_BRUSH = 0.006
+"""m that a foot in the air keeps over the floor."""
 _KNEE = 0.8
 """Cost of a knee that is not bent as the dancer's, 1/rad: legs straight where hers are, though
 feet farther apart pull them askew."""
@@ -233,22 +235,20 @@ class _Poser:
         self._like_hers = _like_hers(model, source.angles)
         self._posture = mink.PostureTask(model, cost=self._posture_cost())
         self._com = mink.ComTask(_WEIGHT)
+        self._floor = FeetOverFloor(model)
         steady = mink.DampingTask(model, cost=np.full(model.nv, _STEADY))
         self._tasks = [
             self._directions, *self._turned.values(), *self._soles.values(), self._posture, steady,
-            LimbsApart(model, _APART),
         ]  # fmt: skip
         self._pose = body.rest.copy()
         data = mujoco.MjData(model)
         data.qpos[:] = body.rest
         mujoco.mj_kinematics(model, data)
-        geoms = sole_geoms(model)
-        self._radius = float(model.geom_size[geoms[0], 0])
-        self._studs = {}
-        for side in SIDES:
-            mine = [body.bodies[f"{side}_{part}"] for part in ("foot", "toe")]
-            places = data.geom_xpos[geoms[np.isin(model.geom_bodyid[geoms], mine)]]
-            self._studs[side] = places - data.xpos[body.bodies[f"{side}_foot"]]
+        owners = model.geom_bodyid[self._floor.soles]
+        self._of = {
+            side: np.isin(owners, [body.bodies[f"{side}_{part}"] for part in ("foot", "toe")])
+            for side in SIDES
+        }
         self._foot_from_ankle = {
             s: data.xpos[body.bodies[f"{s}_foot"]] - data.site(f"{s}_ankle").xpos for s in SIDES
         }
@@ -260,7 +260,8 @@ class _Poser:
         self._pelvis.set_position_cost(_ROOT if weight is None else _ROOT_BALANCED)
         tasks = self._tasks if weight is None else [*self._tasks, self._com]
         configuration = mink.Configuration(model, q=self._body.rest)
-        limits = [mink.ConfigurationLimit(model, gain=1.0)]
+        ranges: list[mink.Limit] = [mink.ConfigurationLimit(model, gain=1.0)]
+        limits = [*ranges, LimbsApart(model), self._floor]
         qpos = np.empty((self._source.count, model.nq))
         for i, row in enumerate(qpos):
             self._ask(i)
@@ -269,7 +270,7 @@ class _Poser:
             if i == 0:
                 configuration.update(self._pose)
             for _ in range(_EACH if i else _FIRST):
-                step = mink.solve_ik(configuration, tasks, _DT, "daqp", 1e-6, limits=limits)
+                step = _step(configuration, tasks, limits, ranges)
                 configuration.integrate_inplace(step, _DT)
             row[:] = configuration.q
             if i and row[3:7] @ qpos[i - 1, 3:7] < 0:
@@ -309,10 +310,9 @@ class _Poser:
                 way = (free.inv() * Rotation.from_matrix(rotation)).as_rotvec()
                 rotation = (free * Rotation.from_rotvec(laid * way)).as_matrix()
             origin = ankle + rotation @ self._foot_from_ankle[side]
-            lowest = float((origin + self._studs[side] @ rotation.T)[:, 2].min()) - self._radius
-            origin[2] += max((1.0 - laid) * _BRUSH - lowest, 0.0)
             level = _FREE + laid**4 * (_PLANTED - _FREE)
-            task.set_position_cost((level, level, max(level, _OVER_FLOOR)))
+            task.set_position_cost(level)
+            self._floor.clearance[self._of[side]] = (1.0 - laid) * _BRUSH if laid < 1.0 else -np.inf
             task.set_orientation_cost(_LOOSE + laid**4 * (_LAID - _LOOSE))
             task.set_target(
                 mink.SE3.from_rotation_and_translation(mink.SO3.from_matrix(rotation), origin)
@@ -334,6 +334,20 @@ class _Poser:
         for joint, (_, _, own) in self._like_hers.items():
             cost[model.jnt_dofadr[joint]] = own
         return cost
+
+
+def _step(
+    configuration: mink.Configuration,
+    tasks: list[mink.Task],
+    limits: list[mink.Limit],
+    ranges: list[mink.Limit],
+) -> Array:
+    """A step of the inverse kinematics; within the joints' ranges alone where all limits can't be
+    kept at once."""
+    try:
+        return np.asarray(mink.solve_ik(configuration, tasks, _DT, "daqp", 1e-6, limits=limits))
+    except mink.NoSolutionFound:
+        return np.asarray(mink.solve_ik(configuration, tasks, _DT, "daqp", 1e-6, limits=ranges))
 
 
 def _like_hers(

@@ -15,6 +15,8 @@ from enpointe.motion.footprints import Sole, footings
 from enpointe.motion.puppeteering import Puppeteered, puppeteer
 from enpointe.motion.retargeting.body import Body
 
+from .dancing import solved
+
 BODIES = {"puppet": puppet_model, "op3": op3_model}
 
 
@@ -111,3 +113,37 @@ def test_feet_in_one_place_are_set_beside_each_other() -> None:
     apart = found["left"].ankle[0] - found["right"].ankle[0]
     assert abs(apart[1]) >= 0.048
     assert abs(apart[0]) < 1e-9
+
+
+def fifth() -> Motion:
+    """The dancer stands in fifth, closer than bodies of servos can."""
+    qpos = solved("third-port-de-bras").key_poses[0].qpos
+    time = np.arange(0.0, 0.4, 0.01)
+    return Motion.from_qpos(dancer_model(flesh=False), time, np.tile(qpos, (len(time), 1)))
+
+
+@pytest.mark.parametrize("name", sorted(BODIES))
+def test_legs_too_thick_for_a_position_stand_wider(name: str) -> None:
+    """No limb in another at any moment, and it is told by how much the position was opened."""
+    made = puppeteer(fifth(), BODIES[name]())
+    model = made.motion.model
+    data = mujoco.MjData(model)
+    plane = int(mujoco.mjtGeom.mjGEOM_PLANE)
+    for qpos in made.motion.qpos[::5]:
+        data.qpos[:] = qpos
+        mujoco.mj_forward(model, data)
+        limbs = (model.geom_type[data.contact.geom] != plane).all(axis=1)
+        assert data.contact.dist[limbs].min(initial=0.0) > -5e-4
+    assert made.opened > 0.002
+    points = trace_soles(made.motion, sole_geoms(model))
+    assert np.ptp(points[:, made.contacts.bears.all(axis=0), :2], axis=0).max() < 1e-3
+
+
+def test_weight_planned_for_slower_tempi_stays_over_the_feet(made: Puppeteered) -> None:
+    """The centre of mass itself, which is the zero-moment point of a dance that takes for ever."""
+    assert made.weight is not None
+    for k, time in enumerate(made.weight.time):
+        points = made.contacts.points[made.contacts.index(float(time))]
+        bearing = points[made.contacts.at(float(time)), :2]
+        assert np.all(bearing.min(axis=0) < made.weight.com[k, :2])
+        assert np.all(bearing.max(axis=0) > made.weight.com[k, :2])
