@@ -2,8 +2,9 @@
 
 Each stretch of standing has one footprint: the dancer's, on the body's scale. A body of servos has
 feet that are large for its size; a footprint that would lie in that of the other foot is moved out
-of it by the shortest way. A heel rises in proportion to the dancer's, so that at her highest the
-foot stands on its second sole, and stays down if there is none.
+of it: to its own side where the dancer's feet are beside each other, as in first, and forward or
+back where they are before each other, as in fifth. A heel rises in proportion to the dancer's, so
+that at her highest the foot stands on its second sole, and stays down if there is none.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from enpointe.models.anatomy import SIDES
+from enpointe.models.anatomy import SIDES, side_sign
 from enpointe.models.soles import sole_geoms
 from enpointe.motion.retargeting.body import Body
 from enpointe.motion.retargeting.holding import ramped, runs
@@ -32,6 +33,8 @@ _SETTLE = 0.2
 """s in which a foot comes from where it was led in the air to where it stands."""
 _CLEAR = 0.004
 """m between two footprints."""
+_ASKEW = 0.1
+"""An axis on which a way goes less than this share of itself does not part two footprints."""
 
 
 @dataclass(frozen=True)
@@ -96,7 +99,7 @@ class Footing:
 
 
 def footings(
-    feet: dict[str, tuple[Array, Array, Array]],
+    feet: dict[str, tuple[Array, Array, Array, Array]],
     standing: dict[str, Mask],
     body: Body,
     scale: float,
@@ -106,7 +109,8 @@ def footings(
     """Footings of both feet.
 
     Args:
-        feet: By side, the dancer's ball (T, 3), m, and the frames of toes and foot (T, 3, 3).
+        feet: By side, the dancer's ball (T, 3), m, the frames of toes and foot (T, 3, 3), and her
+            ankle (T, 3), m.
         standing: By side, (T,), whether it stands.
         body: Whose feet are to stand.
         scale: Its size over the dancer's.
@@ -119,7 +123,8 @@ def footings(
     yaws = {side: _headings(feet[side][1], standing[side]) for side in SIDES}
     _settle(balls, standing)
     drawn = {side: ball.copy() for side, ball in balls.items()}
-    _stand_clear(balls, yaws, standing, soles)
+    ankles = {side: scale * feet[side][3][:, :2] for side in SIDES}
+    _stand_clear(balls, yaws, ankles, standing, soles)
     for side, more in ({} if aside is None else aside).items():
         balls[side] += more
     made = {}
@@ -175,6 +180,7 @@ def _settle(balls: dict[str, Array], standing: dict[str, Mask]) -> None:
 def _stand_clear(
     balls: dict[str, Array],
     yaws: dict[str, Array],
+    ankles: dict[str, Array],
     standing: dict[str, Mask],
     soles: dict[str, Sole],
 ) -> None:
@@ -188,7 +194,9 @@ def _stand_clear(
             if first < last:
                 mine = _footprint(soles[side], balls[side][first], yaws[side][first])
                 theirs = _footprint(soles[other], balls[other][first], yaws[other][first])
-                balls[side][run] += _way_out(mine, theirs)
+                facing = 0.5 * (yaws[side][first] + yaws[other][first])
+                away = ankles[side][first] - ankles[other][first]
+                balls[side][run] += _way_out(mine, theirs, _way(away, facing, side))
         taken[side].append(run)
 
 
@@ -197,19 +205,33 @@ def _footprint(sole: Sole, ball: Array, yaw: float) -> Array:
     return np.asarray(ball + (sole.outline - sole.edge[:2]) @ np.array([[c, s], [-s, c]]))
 
 
-def _way_out(mine: Array, theirs: Array) -> Array:
-    """The shortest way, (2,), that one rectangle must go to be clear of another."""
-    best, least = np.zeros(2), np.inf
+def _way(away: Array, facing: float, side: str) -> Array:
+    """Where a foot goes to be clear of the other: to its side, or forward or back.
+
+    Args:
+        away: (2,), from the other ankle to its own, of the dancer.
+        facing: Between the two feet, rad.
+        side: Of the foot.
+    """
+    ahead = np.array([np.cos(facing), np.sin(facing)])
+    outward = side_sign(side) * np.array([-ahead[1], ahead[0]])
+    along = float(away @ ahead)
+    if float(away @ outward) > abs(along):
+        return outward
+    return ahead if along >= 0.0 else -ahead
+
+
+def _way_out(mine: Array, theirs: Array, way: Array) -> Array:
+    """How far, (2,), one rectangle must go along a way to be clear of another."""
+    least = np.inf
     for corners in (mine, theirs):
         for side in (corners[1] - corners[0], corners[2] - corners[1]):
             axis = side / np.linalg.norm(side)
+            if axis @ way < 0.0:
+                axis = -axis
             own, other = mine @ axis, theirs @ axis
-            for depth, way in (
-                (other.max() - own.min() + _CLEAR, axis),
-                (own.max() - other.min() + _CLEAR, -axis),
-            ):
-                if depth <= 0.0:
-                    return np.zeros(2)
-                if depth < least:
-                    best, least = depth * way, depth
-    return best
+            if own.min() > other.max() + _CLEAR or other.min() > own.max() + _CLEAR:
+                return np.zeros(2)
+            if (speed := float(axis @ way)) > _ASKEW:
+                least = min(least, float(other.max() - own.min() + _CLEAR) / speed)
+    return least * way

@@ -204,13 +204,14 @@ class _Source:
             self.pelvis[i] = data.xpos[dancer.bodies["pelvis"]]
 
     @property
-    def feet(self) -> dict[str, tuple[Array, Array, Array]]:
-        """Of each side: place of the ball (T, 3), frames of the toes and of the foot (T, 3, 3)."""
+    def feet(self) -> dict[str, tuple[Array, Array, Array, Array]]:
+        """Of each side what `footings` asks for."""
         return {
             side: (
                 self.points[f"{side}_ball"],
                 self.frames[f"{side}_toe"],
                 self.frames[f"{side}_foot"],
+                self.points[f"{side}_ankle"],
             )
             for side in SIDES
         }
