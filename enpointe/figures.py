@@ -267,6 +267,7 @@ class ServoFigures(TypedDict):
     frame_loss: float
     faults: list[str]
     ending: str
+    positions_opened: float | None
     root_off_max: float | None
     tracking_rms_deg: float
     tracking_rms_deg_by_joint: dict[str, float]

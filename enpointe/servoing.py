@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -65,6 +65,7 @@ class ServoPerformance:
         feasibility: Whether the rig can dance it as written; None if that was not asked.
         staged: What was seen of a simulated body on its own feet; None of any other.
         stage: On what it danced, in words.
+        opened: m, see `RigMotion`.
     """
 
     rig: Rig
@@ -75,6 +76,7 @@ class ServoPerformance:
     feasibility: Feasibility | None = None
     staged: StagedDance | None = None
     stage: str = _REAL
+    opened: float | None = None
 
     @property
     def completed(self) -> bool:
@@ -144,6 +146,7 @@ class ServoPerformance:
             "frame_loss": self.statistics.frame_loss,
             "faults": list(self.statistics.faults),
             "ending": self.statistics.ending.value,
+            "positions_opened": self.opened,
             "root_off_max": None if self.staged is None else self.staged.root_off,
             "tracking_rms_deg": overall,
             "tracking_rms_deg_by_joint": self.tracking_by_joint(),
@@ -210,7 +213,7 @@ def servo(
     danced = _danced(chosen, made.motion, port, faults, seed, progress)
     stage = {EMULATED: _NOBODY, MEMORY: _NOBODY, SIMULATED: _STAND}.get(port, _REAL)
     done = danced.recording, danced.statistics
-    return ServoPerformance(chosen, port, made.motion, *done, found, stage=stage)
+    return ServoPerformance(chosen, port, made.motion, *done, found, None, stage, made.opened)
 
 
 def _danced(
@@ -249,7 +252,7 @@ def _on_its_feet(
         made.motion, rig, contacts=made.contacts, faults=faults, progress=progress
     )
     done = staged.recording, staged.statistics
-    return ServoPerformance(rig, SIMULATED, staged.motion, *done, found, staged, _FEET)
+    return ServoPerformance(rig, SIMULATED, staged.motion, *done, found, staged, _FEET, made.opened)
 
 
 def would(
@@ -299,10 +302,13 @@ class RigMotion:
     Attributes:
         motion: Of that body.
         contacts: Which soles are to bear, and when; None if that is to be read from the motion.
+        opened: m, by how much positions of the feet are wider than the dancer's on its scale, at
+            most; None if it was of that body already.
     """
 
     motion: Motion
     contacts: ContactSchedule | None = None
+    opened: float | None = None
 
     def slowed(self, found: Feasibility) -> RigMotion:
         """The same as the rig can dance it.
@@ -313,7 +319,7 @@ class RigMotion:
         motion = found.slowed
         if self.contacts is None or found.time_scale is None:
             return RigMotion(motion)
-        return RigMotion(motion, self.contacts.slowed(found.time_scale))
+        return replace(self, motion=motion, contacts=self.contacts.slowed(found.time_scale))
 
 
 def rig_motion(
@@ -352,4 +358,4 @@ def rig_motion(
         progress("puppet", done, total)
 
     made = puppeteer(danced, model, progress=posed)
-    return RigMotion(made.motion, made.contacts)
+    return RigMotion(made.motion, made.contacts, made.opened)

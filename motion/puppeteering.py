@@ -46,7 +46,7 @@ Array = NDArray[np.float64]
 RATE = 100.0
 """Samples a second: servos are asked no oftener than 200 times."""
 _DT = 1.0
-_FIRST, _EACH = 60, 3
+_FIRST, _EACH, _ANEW = 60, 3, 8
 _PELVIS, _TORSO, _HEAD = 2.0, 1.5, 0.7
 _TURNOUT = 0.3
 _THIGHS = ("left_thigh", "right_thigh")
@@ -66,7 +66,7 @@ _TOUCHES = 0.002
 """m above the floor at which a sole of a standing foot bears."""
 _ON_MARK = 5e-4
 """m that a foot may stand beside its mark, before the mark goes to where it can stand."""
-_OPENINGS = 6
+_OPENINGS, _SPARSE = 6, 6
 _KINKS = 0.12
 """s: kinks where feet come and go are averaged away over this width."""
 
@@ -132,26 +132,32 @@ def puppeteer(
         made = Motion.from_qpos(model, time, qpos, events=motion.events, name=motion.name)
         return made, _contacts(made, body, feet)
 
-    weight = None
-    made, contacts = pose(None)
     for _ in range(_OPENINGS):
-        if not _opened(aside, made, feet):
+        if not _opened(aside, poser.pose_all(None, None, every=_SPARSE), body, feet):
             break
         feet = footings(source.feet, standing, body, scale, RATE, aside)
         poser = _Poser(source, body, scale, feet)
-        made, contacts = pose(None)
+    weight = None
+    made, contacts = pose(None)
     if balanced:
         weight = plan_weight(made, contacts, made, slower=True)
         made, contacts = pose(weight)
     return Puppeteered(made, contacts, weight, scale, _opening(feet))
 
 
-def _opened(aside: dict[str, Array], made: Motion, feet: dict[str, Footing]) -> bool:
-    """Move marks, in place, to where feet can stand; whether any had to be moved."""
-    model = made.model
+def _opened(aside: dict[str, Array], posed: Array, body: Body, feet: dict[str, Footing]) -> bool:
+    """Move marks, in place, to where feet can stand; whether any had to be moved.
+
+    Args:
+        aside: What marks were moved by so far, moved on.
+        posed: (N, nq), every `_SPARSE`th sample.
+        body: Whose.
+        feet: As they were asked to stand.
+    """
+    model = body.model
     data = mujoco.MjData(model)
-    off = {side: np.zeros((len(made.time), 2)) for side in SIDES}
-    for i, qpos in enumerate(made.qpos):
+    off = {side: np.zeros_like(moved) for side, moved in aside.items()}
+    for i, qpos in zip(range(0, len(off["left"]), _SPARSE), posed, strict=True):
         data.qpos[:] = qpos
         mujoco.mj_kinematics(model, data)
         for side in SIDES:
@@ -255,7 +261,11 @@ class _Poser:
         }
 
     def pose_all(
-        self, weight: WeightPlan | None, progress: Callable[[int, int], None] | None
+        self,
+        weight: WeightPlan | None,
+        progress: Callable[[int, int], None] | None,
+        *,
+        every: int = 1,
     ) -> Array:
         model = self._body.model
         self._pelvis.set_position_cost(_ROOT if weight is None else _ROOT_BALANCED)
@@ -263,21 +273,22 @@ class _Poser:
         configuration = mink.Configuration(model, q=self._body.rest)
         ranges: list[mink.Limit] = [mink.ConfigurationLimit(model, gain=1.0)]
         limits = [*ranges, LimbsApart(model), self._floor]
-        qpos = np.empty((self._source.count, model.nq))
-        for i, row in enumerate(qpos):
+        samples = range(0, self._source.count, every)
+        qpos = np.empty((len(samples), model.nq))
+        for k, (i, row) in enumerate(zip(samples, qpos, strict=True)):
             self._ask(i)
             if weight is not None:
                 self._com.set_target(weight.at(i / RATE)[0])
             if i == 0:
                 configuration.update(self._pose)
-            for _ in range(_EACH if i else _FIRST):
+            for _ in range(min(_EACH * every, _ANEW) if i else _FIRST):
                 step = _step(configuration, tasks, limits, ranges)
                 configuration.integrate_inplace(step, _DT)
             row[:] = configuration.q
-            if i and row[3:7] @ qpos[i - 1, 3:7] < 0:
+            if k and row[3:7] @ qpos[k - 1, 3:7] < 0:
                 row[3:7] *= -1.0
-            if progress is not None and i % 50 == 0:
-                progress(i, len(qpos))
+            if progress is not None and k % 50 == 0:
+                progress(k, len(qpos))
         return qpos
 
     def _ask(self, i: int) -> None:
