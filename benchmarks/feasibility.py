@@ -1,8 +1,8 @@
-"""Grand battement at its tempo on a rig: what limits, the time that is enough, and the run in it.
+"""Grand battement at its tempo on a rig: what limits, the time that is enough, and the runs in it.
 
-Where limbs collide, no time is enough: then it runs in the time that the servos alone would need.
-The rig's body hangs on a stand in MuJoCo behind the emulated bus; the rig's own loop drives it
-through the real dynamixel-sdk, as written and in the time that is enough.
+The rig's body stands in MuJoCo behind the emulated bus, and the rig's own loop drives it through
+the real dynamixel-sdk: hung on a stand, as written and in the time that is enough there; and on its
+own feet, in the time that is enough for these.
 """
 
 from __future__ import annotations
@@ -23,8 +23,9 @@ from enpointe.hardware.rig_file import Rig, load_rig
 from enpointe.models.puppet import op3_spec, puppet_spec
 from enpointe.motion import Motion
 from enpointe.motion.joint_timing import TimingKept, timing_kept
-from enpointe.motion.puppeteering import puppeteer
+from enpointe.motion.puppeteering import Puppeteered, puppeteer
 from enpointe.motion.slowing import slowed
+from enpointe.puppet_stage import dance_on_stage
 from enpointe.report.bodies import write_bodies
 from enpointe.report.feasibility import write_feasibility
 from enpointe.servo_loop import dance_on
@@ -84,6 +85,24 @@ def run(rig: Rig, motion: Motion) -> tuple[Recording, dict[str, object]]:
         "tracking_max_deg": float(np.degrees(np.abs(hinges).max())),
         "hottest": float(recording.channels["temperature"].max()),
     }
+
+
+def free(rig: Rig, made: Puppeteered, scale: float) -> dict[str, object]:
+    """What a body on its own feet did, nothing holding it."""
+    contacts = made.contacts.slowed(scale)
+    danced = dance_on_stage(slowed(made.motion, scale), rig, contacts=contacts)
+    error = np.degrees(danced.tracking_error)
+    force = np.asarray(danced.stage["sole_force"])[:, :, 2]
+    return {
+        "fell": danced.fell,
+        "opened": made.opened,
+        "tracking_rms_deg": float(np.sqrt(np.mean(error**2))),
+        "tracking_max_deg": float(np.abs(error).max()),
+        "root_off_max": danced.root_off,
+        "root_force_max": float(np.asarray(danced.stage["root_force"]).max()),
+        "on_one_foot": float(np.mean((force[:, : force.shape[1] // 2].sum(axis=1) < 0.1)
+                                     | (force[:, force.shape[1] // 2 :].sum(axis=1) < 0.1))),
+    }  # fmt: skip
 
 
 def _actuated(motion: Motion) -> list[str]:
@@ -148,6 +167,8 @@ def main() -> None:
                 },
                 asked.out,
             )
+    if floor.time_scale is not None:
+        figures["on_its_feet_in_time"] = free(rig, made, floor.time_scale)
     if asked.out is not None:
         write_feasibility(hung, asked.out, timing=timing)
     if asked.json:

@@ -19,6 +19,7 @@ from scipy.optimize import nnls
 
 from enpointe.controllers.plant import Plant
 from enpointe.motion import Motion
+from enpointe.motion.contact_schedule import ContactSchedule
 
 __all__ = ["FeedForward", "floor_forces"]
 
@@ -29,6 +30,9 @@ FRICTION = 0.7
 """Planned below the floor's friction of 1, as a dancer does not count on the last of it. The whole
 body counts on less, because it slid at this where weight goes from foot to foot."""
 _REGULARISATION = 3e-3
+SHIFT = 0.4
+"""s before a sole is lifted in which its weight goes to the others, and after it came down."""
+_LEAST = 0.03
 
 
 @dataclass(frozen=True)
@@ -47,16 +51,27 @@ class FeedForward:
     shortfall: Array
 
     @classmethod
-    def along(cls, motion: Motion) -> FeedForward:
-        """Compute the torques of a whole motion."""
+    def along(cls, motion: Motion, contacts: ContactSchedule | None = None) -> FeedForward:
+        """Compute the torques of a whole motion.
+
+        Args:
+            motion: What is to be danced.
+            contacts: Which soles bear, and when: their weight is shifted before they are lifted.
+                Without, whatever is near the floor bears, a foot that just brushes it too.
+        """
         plant = Plant(motion.model)
+        shares = None if contacts is None else np.maximum(contacts.shares(SHIFT), _LEAST)
         time = np.arange(0.0, motion.duration + 1.0 / RATE, 1.0 / RATE)
         torque = np.empty((len(time), motion.model.nu))
         shortfall = np.empty(len(time))
         for i, t in enumerate(time):
             qpos, qvel, qacc = motion.sample(float(t))
             plant.place(qpos, qvel)
-            torque[i], shortfall[i] = _torques(plant, qacc)
+            bearing = None
+            if contacts is not None and shares is not None:
+                k = contacts.index(float(t))
+                bearing = contacts.soles[contacts.bears[k]], shares[k, contacts.bears[k]]
+            torque[i], shortfall[i] = _torques(plant, qacc, bearing)
         return cls(time, torque, shortfall)
 
     def at(self, t: float) -> Array:
@@ -66,21 +81,27 @@ class FeedForward:
         return np.asarray((1 - w) * self.torque[i] + w * self.torque[i + 1])
 
 
-def floor_forces(plant: Plant, wrench: Array) -> tuple[Array, Array]:
+def floor_forces(
+    plant: Plant, wrench: Array, bearing: tuple[NDArray[np.int64], Array] | None = None
+) -> tuple[Array, Array]:
     """Forces at the soles on the floor that give the root `wrench`.
 
     Args:
         plant: Placed at a pose.
         wrench: (6,), the root's rows of inverse dynamics.
+        bearing: The soles that bear, (A,), and how readily, (A,): a force on one of half the share
+            counts as twice as large. All that are near the floor, alike, if None.
 
     Returns:
         Their generalised force on the whole body (nv,), and the part of `wrench` left over (6,).
     """
-    geoms = plant.soles_on_floor()
+    geoms, shares = (plant.soles_on_floor(), None) if bearing is None else bearing
     if len(geoms) == 0:
         return np.zeros(plant.model.nv), wrench
     edges = np.array([[FRICTION, 0, 1], [-FRICTION, 0, 1], [0, FRICTION, 1], [0, -FRICTION, 1]])
     jacobians = plant.contact_jacobians(geoms)
+    if shares is not None:
+        jacobians *= shares[:, None, None]
     spread = np.einsum("ec,scv->sev", edges, jacobians).reshape(-1, plant.model.nv)
     matrix = np.vstack([spread[:, :6].T, _REGULARISATION * np.eye(len(spread))])
     forces, _ = nnls(matrix, np.concatenate([wrench, np.zeros(len(spread))]))
@@ -88,8 +109,10 @@ def floor_forces(plant: Plant, wrench: Array) -> tuple[Array, Array]:
     return given, wrench - given[:6]
 
 
-def _torques(plant: Plant, qacc: Array) -> tuple[Array, float]:
+def _torques(
+    plant: Plant, qacc: Array, bearing: tuple[NDArray[np.int64], Array] | None
+) -> tuple[Array, float]:
     needed = plant.inverse_dynamics(qacc)
-    given, missing = floor_forces(plant, needed[:6])
+    given, missing = floor_forces(plant, needed[:6], bearing)
     torque = (needed - given)[plant.actuated_dofs]
     return np.clip(torque, -plant.torque_limit, plant.torque_limit), float(np.linalg.norm(missing))

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from enpointe.errors import EnpointeError, MotionError
 from enpointe.notation import shipped_scores
-from enpointe.stored import is_stored, load_stored
+from enpointe.own_formats import OF_ANY_BODY, OWN_ENDINGS, own_writers
+from enpointe.stored import is_stored, load_own, load_stored
 
 if TYPE_CHECKING:
+    import mujoco
+
     from enpointe.models import Anthropometry
     from enpointe.motion.formats.fitting import AnyKind, Movement
 
@@ -24,8 +27,6 @@ LENGTHS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254}
 _USUAL_RATE, _USUAL_UNIT = 60.0, "mm"
 _NAME_UNITS = frozenset({"C3D", "TRC", "CSV", "CSV of joints"})
 """Formats in which a length's unit has a name, as CMU's (inches / 0.45) has none."""
-
-_OWN_ENDINGS = {".npz": "npz", ".gltf": "gltf", ".glb": "gltf", ".xml": "keyframes"}
 
 
 @dataclass(frozen=True)
@@ -102,7 +103,7 @@ def convert(
         source: A file of any known format, told by its content.
         target: Where to, whole or not at all. Its ending names the format.
         to: The format, whatever the ending, by its name in `enpointe.motion.formats.formats()`, or
-            npz, gltf, keyframes.
+            npz, gltf, keyframes; ros2, a JointTrajectory in YAML, or mcap, the same as a bag.
         rate: Frames per second to write; the source's if None. Places are linear between frames,
             rotations go the shortest way, nothing is filtered.
         source_rate: Frames per second of the source, where its file does not say or is wrong.
@@ -128,7 +129,7 @@ def convert(
     files = _files(target, writers[0])
     beside = _beside(source, skeleton)
     _refuse_to_overwrite([source, *beside], files)
-    way = _Way(*_read(source, beside, dancer, flesh=writers[0].name == "gltf"))
+    way = _Way(*_read(source, beside, dancer, writers[0].name))
     try:
         if source_rate is not None:
             way.at_source_rate(source_rate)
@@ -264,8 +265,8 @@ def _refuse_a_score(source: Path) -> None:
 
 def _writers(target: Path, to: str | None) -> tuple[_Writer, ...]:
     """Of the format that was named, or of the ending; several where these share it (CSV)."""
-    name = _OWN_ENDINGS.get(target.suffix.lower()) if to is None else to.strip().lower()
-    own = _own_writers()
+    name = OWN_ENDINGS.get(target.suffix.lower()) if to is None else to.strip().lower()
+    own = own_writers()
     if name in own:
         return (_Writer(name, "dancer", own[name]),)
     from enpointe.motion.formats.registry import writable
@@ -273,32 +274,12 @@ def _writers(target: Path, to: str | None) -> tuple[_Writer, ...]:
     try:
         found = writable(target, to)
     except EnpointeError as error:
-        more = " " + " ".join(_OWN_ENDINGS) if to is None else ", " + ", ".join(own)
+        more = " " + " ".join(OWN_ENDINGS) if to is None else ", " + ", ".join(own)
         raise EnpointeError(f"{error}{more}") from None
     return tuple(
         _Writer(each.name, each.kind, each.write, each.companion)  # type: ignore[arg-type]
         for each in found
     )
-
-
-def _own_writers() -> dict[str, Callable[[Movement, Path], tuple[str, ...]]]:
-    """Formats that hold the dancer's motion whole, or her shapes."""
-    from enpointe.motion import Motion
-    from enpointe.motion.formats.gltf import write_gltf
-    from enpointe.motion.formats.mjcf import write_keyframes
-    from enpointe.motion.npz import save_motion
-
-    def of_motion(
-        write: Callable[[Motion, Path], tuple[str, ...] | None],
-    ) -> Callable[[Movement, Path], tuple[str, ...]]:
-        def checked(movement: Movement, path: Path) -> tuple[str, ...]:
-            assert isinstance(movement, Motion)
-            return write(movement, path) or ()
-
-        return checked
-
-    writers = {"npz": save_motion, "gltf": write_gltf, "keyframes": write_keyframes}
-    return {name: of_motion(write) for name, write in writers.items()}
 
 
 def _files(target: Path, writer: _Writer) -> dict[str, Path]:
@@ -327,16 +308,26 @@ def _refuse_to_overwrite(read: list[Path], files: dict[str, Path]) -> None:
 
 
 def _read(
-    source: Path, beside: list[Path], dancer: Anthropometry | None, *, flesh: bool
+    source: Path, beside: list[Path], dancer: Anthropometry | None, to: str
 ) -> tuple[Movement, str, tuple[str, ...], tuple[str, ...]]:
     from enpointe.motion.formats.amc import AMC, read_amc
     from enpointe.motion.formats.registry import sniffed
 
     if is_stored(source):
-        return load_stored(source, dancer, flesh=flesh), "a motion of the dancer", (), ()
+        for body, model in _puppets() if to in OF_ANY_BODY else ():
+            if (own := load_own(source, model)) is not None:
+                return own, f"a motion of the body {body}", (), ()
+        return load_stored(source, dancer, flesh=to == "gltf"), "a motion of the dancer", (), ()
     found = sniffed(source)
     content = read_amc(source, beside[0]) if beside and found is AMC else found.read(source)
     return content.motion, found.name, content.warnings, content.lost
+
+
+def _puppets() -> Iterator[tuple[str, mujoco.MjModel]]:
+    from enpointe.models.puppet import op3_model, puppet_model
+
+    yield "puppet", puppet_model()
+    yield "op3", op3_model()
 
 
 def _counted(movement: Movement) -> tuple[int, float, int]:

@@ -249,6 +249,7 @@ class LatenessFigures(TypedDict):
 class ServoFigures(TypedDict):
     """A dance of servos."""
 
+    stage: str
     title: str
     feasible: bool | None
     time_scale: float | None
@@ -266,5 +267,7 @@ class ServoFigures(TypedDict):
     frame_loss: float
     faults: list[str]
     ending: str
+    positions_opened: float | None
+    root_off_max: float | None
     tracking_rms_deg: float
     tracking_rms_deg_by_joint: dict[str, float]

@@ -1,4 +1,4 @@
-"""A body of servos that stands by itself: emulated bus, motors, gravity and a floor, in one."""
+"""A simulated body behind an emulated bus: on its own feet with gravity and a floor, or hung up."""
 
 from __future__ import annotations
 
@@ -14,11 +14,14 @@ from enpointe.preparing import Progress, silent
 if TYPE_CHECKING:
     from enpointe.controllers import Command, Recording
     from enpointe.hardware.dynamixel import ServoRig, Statistics
+    from enpointe.hardware.emulator import FaultRun
     from enpointe.hardware.rig_file import Rig
     from enpointe.motion import Motion
+    from enpointe.motion.contact_schedule import ContactSchedule
+    from enpointe.servo_loop import Danced
     from enpointe.sim.servo_plant import ServoPlant
 
-__all__ = ["SETTLE", "StagedDance", "dance_on_stage"]
+__all__ = ["SETTLE", "StagedDance", "dance_on_stage", "dance_on_stand"]
 
 SETTLE = 1.0
 """s in the first pose once the hands have let go, before the dance begins."""
@@ -50,18 +53,42 @@ class StagedDance:
         asked = np.array([self.motion.sample(float(t))[0][places] for t in self.stage["time"]])
         return np.asarray(np.asarray(self.stage["qpos"])[:, places] - asked)
 
+    @property
+    def root_off(self) -> float:
+        """How far the root was from where it was asked to be, at most, m."""
+        asked = np.array([self.motion.sample(float(t))[0][:3] for t in self.stage["time"]])
+        away = np.asarray(self.stage["qpos"])[:, :3] - asked
+        return float(np.linalg.norm(away, axis=1).max(initial=0.0))
 
-def dance_on_stage(motion: Motion, rig: Rig, *, progress: Progress = silent) -> StagedDance:
+    def seen(self) -> Motion:
+        """What the hall saw, root and all, to be filmed and measured."""
+        from enpointe.motion import Motion
+
+        time = np.asarray(self.stage["time"], dtype=float)
+        qpos = np.asarray(self.stage["qpos"], dtype=float)
+        return Motion.from_qpos(self.motion.model, time - time[0], qpos, name=self.motion.name)
+
+
+def dance_on_stage(
+    motion: Motion,
+    rig: Rig,
+    *,
+    contacts: ContactSchedule | None = None,
+    faults: FaultRun | None = None,
+    progress: Progress = silent,
+) -> StagedDance:
     """Let a body of servos dance by itself: nothing but gravity, a floor and its motors.
 
     The servos are those of the emulated bus, in memory and on a clock of their own, driven through
     the SDK at the rig's rate; behind them stands the simulated body. Hands hold it in the first
-    pose until its torque is on. Goals lie ahead of the motion by the sag of the servos (`Springs`);
-    there is no feedback of balance.
+    pose until its torque is on. Goals lie ahead of the motion by the sag and the lag of the servos
+    (`Springs`), and weight leaves a foot before it is lifted; there is no feedback of balance.
 
     Args:
         motion: Of the rig's body, such as `enpointe.motion.puppeteering.puppeteer` gives.
         rig: Its servos.
+        contacts: Which soles bear, and when; read from the motion if None.
+        faults: What goes wrong on the bus.
         progress: Told how far it is.
 
     Raises:
@@ -70,19 +97,21 @@ def dance_on_stage(motion: Motion, rig: Rig, *, progress: Progress = silent) -> 
     from enpointe.controllers import Springs, perform
     from enpointe.hardware.dynamixel import Link, ServoRig, description_of
     from enpointe.hardware.emulator import EmulatedPort, VirtualClock, bus_of
-    from enpointe.hardware.stiffness import stiffness
+    from enpointe.hardware.stiffness import damping, stiffness
+    from enpointe.motion.contact_schedule import contact_schedule
     from enpointe.servo_loop import layout_of
     from enpointe.sim.servo_plant import ServoPlant
 
-    motion = _after_standing(motion)
+    motion, contacts = _after_standing(motion, contacts or contact_schedule(motion))
     layout = layout_of(rig, motion)
-    stiff = np.empty(layout.nu)
+    stiff, damped = np.empty(layout.nu), np.empty(layout.nu)
     stiff[layout.actuator] = [stiffness(servo) for servo in rig.servos]
-    springs = Springs(motion, stiff)
+    damped[layout.actuator] = [damping(servo) for servo in rig.servos]
+    springs = Springs(motion, stiff, damping=damped, contacts=contacts, lead=rig.period)
     servos = [(servo.joint, servo.sign, radians(servo.offset)) for servo in rig.servos]
     stage = ServoPlant.of(motion.model, motion.qpos[0], servos, period=rig.period)
     clock = VirtualClock()
-    port = EmulatedPort(bus_of(description_of(rig), plant=stage), clock)
+    port = EmulatedPort(bus_of(description_of(rig), plant=stage, faults=faults), clock)
     port.setBaudRate(rig.baud)
     with ServoRig(rig, Link(port), layout, clock) as body:
         body.start(springs.first_pose)
@@ -93,8 +122,7 @@ def dance_on_stage(motion: Motion, rig: Rig, *, progress: Progress = silent) -> 
             _OnStage(body, stage),
             progress=lambda done, total: progress("servos", done, total),
         )
-        statistics = body.statistics
-    return StagedDance(motion, recording, stage.recorded(), stage.fault, statistics)
+    return StagedDance(motion, recording, stage.recorded(), stage.fault, body.statistics)
 
 
 class _OnStage:
@@ -111,13 +139,58 @@ class _OnStage:
         self.fault = self._rig.fault or self._stage.fault
 
 
-def _after_standing(motion: Motion) -> Motion:
-    """A motion that begins with `SETTLE` in its first pose."""
+def dance_on_stand(
+    motion: Motion, rig: Rig, *, faults: FaultRun | None = None, progress: Progress = silent
+) -> Danced:
+    """Let a body of servos dance while it hangs by its trunk, as a puppet is first tried.
+
+    Args:
+        motion: Of the rig's body.
+        rig: Its servos.
+        faults: What goes wrong on the bus.
+        progress: Told how far it is.
+
+    Raises:
+        RigError: The motion is of another body, or the rig can't begin.
+    """
+    from enpointe.hardware.dynamixel import Link, description_of
+    from enpointe.hardware.emulator import EmulatedPort, VirtualClock, bus_of
+    from enpointe.models.puppet import op3_spec, puppet_spec
+    from enpointe.servo_loop import dance_on
+    from enpointe.sim.stand_plant import StandPlant
+
+    spec = {"op3": op3_spec, "puppet": puppet_spec}[rig.body]()
+    angles = motion.qpos[0, [motion.model.joint(name).qposadr[0] for name in rig.joints]]
+    signs = [servo.sign for servo in rig.servos]
+    offsets = [radians(servo.offset) for servo in rig.servos]
+    stand = StandPlant(spec, angles, rig.joints, signs=signs, offsets=offsets)
+    clock = VirtualClock()
+    port = EmulatedPort(bus_of(description_of(rig), plant=stand, faults=faults), clock)
+    port.setBaudRate(rig.baud)
+    return dance_on(
+        Link(port),
+        rig,
+        motion,
+        clock,
+        progress=lambda done, total: progress("servos", done, total),
+    )
+
+
+def _after_standing(motion: Motion, contacts: ContactSchedule) -> tuple[Motion, ContactSchedule]:
+    """A motion that begins with `SETTLE` in its first pose, and its contacts."""
     from enpointe.motion import Event, Motion
+    from enpointe.motion.contact_schedule import ContactSchedule
 
     step = float(motion.time[1])
     count = round(SETTLE / step)
-    time = np.concatenate([step * np.arange(count), motion.time + count * step])
+    still = step * np.arange(count)
     qpos = np.concatenate([np.tile(motion.qpos[0], (count, 1)), motion.qpos])
     events = [Event(e.time + count * step, e.kind, e.name, e.beat) for e in motion.events]
-    return Motion.from_qpos(motion.model, time, qpos, events=events, name=motion.name)
+    time = np.concatenate([still, motion.time + count * step])
+    later = ContactSchedule(
+        np.concatenate([[0.0], contacts.time + count * step]),
+        contacts.soles,
+        np.concatenate([contacts.points[:1], contacts.points]),
+        np.concatenate([contacts.bears[:1], contacts.bears]),
+    )
+    return Motion.from_qpos(motion.model, time, qpos, events=events, name=motion.name), later

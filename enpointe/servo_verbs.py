@@ -38,7 +38,8 @@ def servo(
         str,
         typer.Option(
             help="A serial port; emulated for a bus in a process of its own; memory for one with a"
-            " clock of its own, the same bit for bit each time."
+            " clock of its own, the same bit for bit each time; simulated for that with the rig's"
+            " body behind it, on a stand or, with --free, on its own feet."
         ),
     ] = "emulated",
     effort: Effort = None,

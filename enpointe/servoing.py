@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -21,16 +21,33 @@ if TYPE_CHECKING:
 
     from enpointe.controllers import Recording
     from enpointe.hardware.dynamixel import Statistics
-    from enpointe.hardware.emulator import Fault
+    from enpointe.hardware.emulator import Fault, FaultRun
     from enpointe.hardware.rig_file import Rig
     from enpointe.motion import Motion
+    from enpointe.motion.contact_schedule import ContactSchedule
+    from enpointe.puppet_stage import StagedDance
     from enpointe.servo_loop import Danced
 
-__all__ = ["EMULATED", "MEMORY", "ServoPerformance", "body_of", "rig_motion", "servo", "would"]
+__all__ = [
+    "EMULATED",
+    "MEMORY",
+    "SIMULATED",
+    "RigMotion",
+    "ServoPerformance",
+    "body_of",
+    "rig_motion",
+    "servo",
+    "would",
+]
 
-EMULATED, MEMORY = "emulated", "memory"
-"""Ports that are none: a bus in a process of its own behind a pseudo-terminal, and one in memory
-with a clock of its own, on which two runs are the same bit for bit."""
+EMULATED, MEMORY, SIMULATED = "emulated", "memory", "simulated"
+"""Ports that are none: a bus in a process of its own behind a pseudo-terminal; one in memory with a
+clock of its own, on which two runs are the same bit for bit; and the same with the rig's body
+behind its servos, in MuJoCo, hung up or on its own feet."""
+_NOBODY = "servos alone, no body behind them (emulated)"
+_STAND = "hung on a stand, with gravity, no floor (simulated)"
+_FEET = "on its own feet, with gravity and a floor, nothing held (simulated)"
+_REAL = "real servos"
 _PATIENCE = 8.0
 """ms of a pseudo-terminal: how long the emulator's process may be away."""
 
@@ -46,6 +63,9 @@ class ServoPerformance:
         recording: What happened.
         statistics: Of loop, bus and ending.
         feasibility: Whether the rig can dance it as written; None if that was not asked.
+        staged: What was seen of a simulated body on its own feet; None of any other.
+        stage: On what it danced, in words.
+        opened: m, see `RigMotion`.
     """
 
     rig: Rig
@@ -54,12 +74,18 @@ class ServoPerformance:
     recording: Recording
     statistics: Statistics
     feasibility: Feasibility | None = None
+    staged: StagedDance | None = None
+    stage: str = _REAL
+    opened: float | None = None
 
     @property
     def completed(self) -> bool:
-        """Whether it came to its end, and the servos were left as they should be."""
+        """Whether it came to its end, and the servos were left as they should be: parked, or on
+        its own feet still standing."""
         from enpointe.hardware.dynamixel import Ending
 
+        if self.staged is not None:
+            return self.recording.fault is None
         return self.recording.fault is None and self.statistics.ending is Ending.PARKED
 
     @cached_property
@@ -81,12 +107,16 @@ class ServoPerformance:
         return dict(zip(names, map(float, np.degrees(_rms(self.tracking_error))), strict=True))
 
     def save(self, folder: Path) -> dict[str, Path]:
-        """Write `motion.npz`, what was asked, and `recording.npz`, what was done."""
+        """Write `motion.npz`, what was asked, and `recording.npz`, what the servos said; of a
+        simulated body on its own feet also `seen.npz`, its motion with the root."""
         from enpointe.motion.npz import save_motion
 
         files = {"motion": folder / "motion.npz", "recording": folder / "recording.npz"}
         save_motion(self.motion, files["motion"])
         self.recording.save(files["recording"])
+        if self.staged is not None:
+            files["seen"] = folder / "seen.npz"
+            save_motion(self.staged.seen(), files["seen"])
         return files
 
     def summary(self) -> ServoFigures:
@@ -98,6 +128,7 @@ class ServoPerformance:
         overall = float(np.degrees(np.sqrt(np.nanmean(squares)))) if squares.size else float("nan")
         found = self.feasibility
         return {
+            "stage": self.stage,
             "title": self.motion.name,
             "feasible": None if found is None else found.feasible,
             "time_scale": None if found is None else found.time_scale,
@@ -115,6 +146,8 @@ class ServoPerformance:
             "frame_loss": self.statistics.frame_loss,
             "faults": list(self.statistics.faults),
             "ending": self.statistics.ending.value,
+            "positions_opened": self.opened,
+            "root_off_max": None if self.staged is None else self.staged.root_off,
             "tracking_rms_deg": overall,
             "tracking_rms_deg_by_joint": self.tracking_by_joint(),
         }
@@ -146,7 +179,8 @@ def servo(
         source: A shipped score's name, a `.bmn` file, or a motion or a recording (`.npz`) of the
             dancer or of the rig's own body.
         rig: A shipped rig's name, a TOML file, or a rig.
-        port: A serial port; "emulated" or "memory" for a bus that is not there.
+        port: A serial port; "emulated" or "memory" for a bus that is not there, "simulated" for one
+            with the rig's body behind it, on a stand or on its own feet as `stand` says.
         effort: See `perform`.
         tempo: See `perform`.
         stand: Whether the body hangs on a stand, and need not balance; see `feasible`.
@@ -165,30 +199,60 @@ def servo(
     from enpointe.hardware.rig_file import Rig, load_rig
 
     chosen = rig if isinstance(rig, Rig) else load_rig(rig)
-    if faults and port not in (EMULATED, MEMORY):
+    if faults and port not in (EMULATED, MEMORY, SIMULATED):
         raise RigError(f"faults happen on an emulated bus; {port} has its own")
-    motion = rig_motion(source, chosen, effort=effort, tempo=tempo, progress=progress)
-    feasibility = None
+    made = rig_motion(source, chosen, effort=effort, tempo=tempo, progress=progress)
+    found = None
     if not as_written:
-        feasibility = feasible(motion, chosen, stand=stand, progress=progress)
-        motion = feasibility.slowed
+        found = feasible(
+            made.motion, chosen, contacts=made.contacts, stand=stand, progress=progress
+        )
+        made = made.slowed(found)
+    if port == SIMULATED and not stand:
+        return _on_its_feet(chosen, made, found, _run(faults, seed), progress)
+    danced = _danced(chosen, made.motion, port, faults, seed, progress)
+    stage = {EMULATED: _NOBODY, MEMORY: _NOBODY, SIMULATED: _STAND}.get(port, _REAL)
+    done = danced.recording, danced.statistics
+    return ServoPerformance(chosen, port, made.motion, *done, found, None, stage, made.opened)
+
+
+def _danced(
+    rig: Rig, motion: Motion, port: str, faults: Sequence[Fault], seed: int, progress: Progress
+) -> Danced:
     from enpointe.servo_loop import dance_in_own_process
 
     def danced(done: float, total: float) -> None:
         progress("servos", done, total)
 
+    if port == SIMULATED:
+        from enpointe.puppet_stage import dance_on_stand
+
+        return dance_on_stand(motion, rig, faults=_run(faults, seed), progress=progress)
     if port == MEMORY:
-        found = _in_memory(chosen, motion, faults, seed, danced)
-    elif port == EMULATED:
+        return _in_memory(rig, motion, _run(faults, seed), danced)
+    if port == EMULATED:
         from enpointe.hardware.dynamixel import description_of
         from enpointe.hardware.emulator import launch
 
-        with launch(description_of(chosen), faults, seed) as path:
-            found = dance_in_own_process(chosen, motion, path, patience=_PATIENCE, progress=danced)
-    else:
-        found = dance_in_own_process(chosen, motion, port, progress=danced)
-    done = found.recording, found.statistics
-    return ServoPerformance(chosen, port, motion, *done, feasibility)
+        with launch(description_of(rig), faults, seed) as path:
+            return dance_in_own_process(rig, motion, path, patience=_PATIENCE, progress=danced)
+    return dance_in_own_process(rig, motion, port, progress=danced)
+
+
+def _on_its_feet(
+    rig: Rig,
+    made: RigMotion,
+    found: Feasibility | None,
+    faults: FaultRun | None,
+    progress: Progress,
+) -> ServoPerformance:
+    from enpointe.puppet_stage import dance_on_stage
+
+    staged = dance_on_stage(
+        made.motion, rig, contacts=made.contacts, faults=faults, progress=progress
+    )
+    done = staged.recording, staged.statistics
+    return ServoPerformance(rig, SIMULATED, staged.motion, *done, found, staged, _FEET, made.opened)
 
 
 def would(
@@ -201,24 +265,25 @@ def would(
     progress: Progress = silent,
 ) -> Feasibility:
     """Whether a rig can dance something, and nothing is danced; see `servo`."""
-    motion = rig_motion(source, rig, effort=effort, tempo=tempo, progress=progress)
-    return feasible(motion, rig, stand=stand, progress=progress)
+    made = rig_motion(source, rig, effort=effort, tempo=tempo, progress=progress)
+    return feasible(made.motion, rig, contacts=made.contacts, stand=stand, progress=progress)
+
+
+def _run(faults: Sequence[Fault], seed: int) -> FaultRun | None:
+    from enpointe.hardware.emulator import FaultRun
+
+    return FaultRun(faults, np.random.default_rng(seed)) if faults else None
 
 
 def _in_memory(
-    rig: Rig,
-    motion: Motion,
-    faults: Sequence[Fault],
-    seed: int,
-    progress: Callable[[float, float], None],
+    rig: Rig, motion: Motion, faults: FaultRun | None, progress: Callable[[float, float], None]
 ) -> Danced:
     from enpointe.hardware.dynamixel import Link, description_of
-    from enpointe.hardware.emulator import EmulatedPort, FaultRun, VirtualClock, bus_of
+    from enpointe.hardware.emulator import EmulatedPort, VirtualClock, bus_of
     from enpointe.servo_loop import dance_on
 
-    run = FaultRun(faults, np.random.default_rng(seed)) if faults else None
     clock = VirtualClock()
-    port = EmulatedPort(bus_of(description_of(rig), faults=run), clock)
+    port = EmulatedPort(bus_of(description_of(rig), faults=faults), clock)
     port.setBaudRate(rig.baud)
     return dance_on(Link(port), rig, motion, clock, progress=progress)
 
@@ -230,6 +295,33 @@ def body_of(rig: Rig) -> mujoco.MjModel:
     return puppet_model() if rig.body == "puppet" else op3_model()
 
 
+@dataclass(frozen=True)
+class RigMotion:
+    """A movement on the body of a rig.
+
+    Attributes:
+        motion: Of that body.
+        contacts: Which soles are to bear, and when; None if that is to be read from the motion.
+        opened: m, by how much positions of the feet are wider than the dancer's on its scale, at
+            most; None if it was of that body already.
+    """
+
+    motion: Motion
+    contacts: ContactSchedule | None = None
+    opened: float | None = None
+
+    def slowed(self, found: Feasibility) -> RigMotion:
+        """The same as the rig can dance it.
+
+        Raises:
+            MotionError: No time scale makes it feasible.
+        """
+        motion = found.slowed
+        if self.contacts is None or found.time_scale is None:
+            return RigMotion(motion)
+        return replace(self, motion=motion, contacts=self.contacts.slowed(found.time_scale))
+
+
 def rig_motion(
     source: str | Path,
     rig: Rig,
@@ -237,8 +329,8 @@ def rig_motion(
     effort: str | None = None,
     tempo: float | None = None,
     progress: Progress = silent,
-) -> Motion:
-    """A movement on the body of a rig.
+) -> RigMotion:
+    """Put a movement on the body of a rig.
 
     Args:
         source: See `servo`.
@@ -248,13 +340,13 @@ def rig_motion(
         progress: Told how far it is.
     """
     from enpointe.performing import perform
-    from enpointe.stored import is_stored, load_stored
+    from enpointe.stored import is_stored, load_own, load_stored
 
     path, model = Path(source), body_of(rig)
     if is_stored(path):
-        own = _own(path, model)
+        own = load_own(path, model)
         if own is not None:
-            return own
+            return RigMotion(own)
         danced = load_stored(path)
     else:
         danced = perform(
@@ -265,18 +357,5 @@ def rig_motion(
     def posed(done: int, total: int) -> None:
         progress("puppet", done, total)
 
-    return puppeteer(danced, model, progress=posed).motion
-
-
-def _own(path: Path, model: mujoco.MjModel) -> Motion | None:
-    """A motion or a recording of the rig's own body; None if the file is of another."""
-    from enpointe.controllers import Recording
-    from enpointe.errors import FormatError
-    from enpointe.motion.npz import is_motion, load_motion
-
-    try:
-        if is_motion(path):
-            return load_motion(path, model)
-        return Recording.load(path, model).as_motion()
-    except FormatError:
-        return None
+    made = puppeteer(danced, model, progress=posed)
+    return RigMotion(made.motion, made.contacts, made.opened)

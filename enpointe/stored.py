@@ -6,10 +6,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    import mujoco
+
     from enpointe.models import Anthropometry
     from enpointe.motion import Motion
 
-__all__ = ["is_stored", "load_stored"]
+__all__ = ["is_stored", "load_own", "load_stored"]
 
 _ARCHIVE, _HEAD = b"PK\x03\x04", 4096
 
@@ -42,6 +44,20 @@ def load_stored(path: Path, dancer: Anthropometry | None = None, *, flesh: bool 
     if is_motion(path):
         return load_motion(path, model)
     return Recording.load(path, model).as_motion()
+
+
+def load_own(path: Path, model: mujoco.MjModel) -> Motion | None:
+    """Reads a motion or a recording of another body; None if the file is of none such."""
+    from enpointe.controllers import Recording
+    from enpointe.errors import FormatError
+    from enpointe.motion.npz import is_motion, load_motion
+
+    try:
+        if is_motion(path):
+            return load_motion(path, model)
+        return Recording.load(path, model).as_motion()
+    except FormatError:
+        return None
 
 
 def _head(path: Path) -> bytes:

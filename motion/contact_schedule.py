@@ -7,7 +7,7 @@ as in a tendu, is not stood on.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import mujoco
 import numpy as np
@@ -60,6 +60,26 @@ class ContactSchedule:
     def at(self, t: float) -> Mask:
         """(S,), whether weight may be on each sole at `t` seconds."""
         return np.asarray(self.bears[self.index(t)])
+
+    def slowed(self, time_scale: float) -> ContactSchedule:
+        """The schedule of the motion in `time_scale` times its time."""
+        return replace(self, time=self.time * time_scale)
+
+    def shares(self, seconds: float) -> Array:
+        """(T, S), how readily each sole bears: 0 where none, rising to 1 in a time and down again.
+
+        Weight so leaves a sole before it is lifted, and comes to it only after it is down. A sole
+        that bears from the beginning, or to the end, bears in full there.
+        """
+        found = np.zeros(self.bears.shape)
+        for sole, bears in enumerate(self.bears.T):
+            edges = np.flatnonzero(np.diff(np.concatenate([[0], bears.astype(np.int8), [0]])))
+            for first, end in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
+                time = self.time[first:end]
+                since = np.full(len(time), np.inf) if first == 0 else time - time[0]
+                until = np.full(len(time), np.inf) if end == len(bears) else time[-1] - time
+                found[first:end, sole] = np.minimum(np.minimum(since, until) / seconds, 1.0)
+        return found
 
 
 def contact_schedule(

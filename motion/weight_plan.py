@@ -93,7 +93,9 @@ class WeightPlan:
         return com, v + dt * a + dt**2 / 2 * jerk, a + dt * jerk
 
 
-def plan_weight(motion: Motion, contacts: ContactSchedule, posed: Motion) -> WeightPlan:
+def plan_weight(
+    motion: Motion, contacts: ContactSchedule, posed: Motion, *, slower: bool = False
+) -> WeightPlan:
     """Plan the centre of mass of a motion.
 
     Args:
@@ -101,6 +103,8 @@ def plan_weight(motion: Motion, contacts: ContactSchedule, posed: Motion) -> Wei
         contacts: Its schedule.
         posed: The motion itself, or as it was posed over an earlier plan: its height and angular
             momentum count, as what a body reaches is not quite what was asked.
+        slower: Keep balance at every slower tempo as well, for which the centre of mass itself must
+            be over the feet: where the zero-moment point is then, is between the two.
     """
     time = np.arange(motion.time[0], motion.time[-1] + 0.5 / PLAN_RATE, 1.0 / PLAN_RATE)
     com, _ = _centroidal(motion, time)
@@ -118,7 +122,9 @@ def plan_weight(motion: Motion, contacts: ContactSchedule, posed: Motion) -> Wei
     arm = lift[0] / load
     mass = float(motion.model.body_mass.sum())
     offset = np.stack([-twist[:, 1], twist[:, 0]], axis=1) / (mass * load)[:, None]
-    place, velocity, acceleration, zmp, outside = _plan_level(com[:, :2], arm, offset, hulls)
+    place, velocity, acceleration, zmp, outside = _plan_level(
+        com[:, :2], arm, offset, hulls, slower=slower
+    )
     return WeightPlan(
         time,
         np.column_stack([place, lift[0]]),
@@ -160,7 +166,7 @@ def _plan_height(asked: Array, standing: NDArray[np.bool_], gravity: float) -> A
 
 
 def _plan_level(
-    asked: Array, arm: Array, offset: Array, hulls: list[Array]
+    asked: Array, arm: Array, offset: Array, hulls: list[Array], *, slower: bool
 ) -> tuple[Array, Array, Array, Array, Array]:
     """Place, velocity, acceleration and zero-moment point (K, 2), and how far outside (K,)."""
     plan = _Chain(2, len(asked))
@@ -176,7 +182,8 @@ def _plan_level(
         standing[k] = 1.0
         middle[k] = centroid(hull) if len(hull) > 2 else hull.mean(axis=0)
         normals, offsets = _shrunk(hull)
-        plan.add(ca.DM(normals) @ zmp[:, k] - outside[k] - ca.DM(offsets), -np.inf, 0)
+        for point in (zmp, plan.place) if slower else (zmp,):
+            plan.add(ca.DM(normals) @ point[:, k] - outside[k] - ca.DM(offsets), -np.inf, 0)
     weight = ca.DM(np.tile(standing, (2, 1)))
     cost = (
         _NEAR * ca.sumsqr(plan.place - ca.DM(asked.T))

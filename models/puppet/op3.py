@@ -237,7 +237,7 @@ def _shape_leg(bench: Workbench, links: dict[str, mujoco.MjsBody], side: str) ->
     bench.box(foot, f"{side}_foot_broad", 0, (0.024, s * 0.0125, -0.0265), (0.114, 0.078, 0.007),
               _WHITE)  # fmt: skip
     bench.touching(thigh, (0, middle, -0.040), (0, middle, -0.095), 0.020)
-    bench.touching(shank, (0, middle, -0.025), (0, middle, -0.085), 0.020)
+    bench.touching(shank, (0, middle, -0.025), (0, middle, -0.080), 0.020)
     bench.touching(foot, (-0.010, s * 0.0125, -0.012), (0.060, s * 0.0125, -0.018), 0.008)
     bench.mark(thigh, f"{side}_hip", (0, middle, 0))
     bench.mark(shank, f"{side}_knee", (0, middle, 0))

@@ -130,6 +130,30 @@ def test_the_floor_cannot_pull() -> None:
     np.testing.assert_allclose(missing, pull, atol=1e-9)
 
 
+def test_only_what_bears_is_leant_on() -> None:
+    """A foot that touches the floor and does not bear carries nothing; one that is about to be
+    lifted little."""
+    plant = placed(standing())
+    soles = plant.soles_on_floor()
+    left = np.array([n.startswith("left") for n in (MODEL.geom(int(g)).name for g in soles)])
+    wrench = plant.inverse_dynamics(np.zeros(MODEL.nv))[:6]
+    leg = [int(MODEL.joint(f"right_{j}").dofadr[0]) for j in ("hip_raise", "knee_bend")]
+    given_, _ = floor_forces(plant, wrench, (soles[left], np.ones(left.sum())))
+    np.testing.assert_allclose(given_[leg], 0, atol=1e-12)
+    force = np.array([0.0, 0, plant.mass * 9.81])
+    foot = plant.data.geom_xpos[soles[left]].mean(axis=0)
+    over_left = np.concatenate([force, np.cross(foot - plant.data.qpos[:3], force)])
+    right = [dof for dof in range(6, MODEL.nv) if _names_dof(dof).startswith("right")]
+    even, _ = floor_forces(plant, over_left)
+    eased, missing = floor_forces(plant, over_left, (soles, np.where(left, 1.0, 0.1)))
+    assert np.linalg.norm(missing) < 0.1
+    assert np.linalg.norm(eased[right]) < 0.5 * np.linalg.norm(even[right])
+
+
+def _names_dof(dof: int) -> str:
+    return str(MODEL.joint(int(MODEL.dof_jntid[dof])).name)
+
+
 def test_in_the_air_there_is_no_floor() -> None:
     qpos = standing()
     qpos[2] += 0.3

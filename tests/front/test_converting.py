@@ -12,6 +12,8 @@ import enpointe
 from enpointe.cli import _run
 from enpointe.errors import EnpointeError
 from enpointe.models import dancer_model
+from enpointe.models.puppet import op3_model
+from enpointe.motion import Motion
 from enpointe.motion.formats import (
     Joint,
     MarkerMotion,
@@ -142,6 +144,25 @@ def test_keyframes_and_back(npz: Path) -> None:
     assert np.array_equal(back.qpos, writhing(frames=21).qpos)
 
 
+def test_a_puppets_motion_goes_to_ros(home: Path) -> None:
+    """Points at its own rate, hinges alone, and it is said that the root stays behind."""
+    model = op3_model()
+    time = np.arange(0.0, 0.505, 0.01)
+    qpos = np.tile(model.key("standing").qpos, (len(time), 1))
+    qpos[:, int(model.joint("r_el").qposadr[0])] = 0.3 * np.sin(3.0 * time)
+    save_motion(Motion.from_qpos(model, time, qpos, name="wave"), home / "wave.npz")
+    done = enpointe.convert("wave.npz", "wave.yaml")
+    assert done.written == "ros2"
+    assert any("root" in line for line in done.lost)
+    text = Path("wave.yaml").read_text(encoding="utf-8")
+    assert text.count("time_from_start") == done.frames == 51
+    assert "r_el" in text.split("points:")[0]
+    bag = enpointe.convert("wave.npz", "wave.mcap", rate=25).files["motion"]
+    assert bag.read_bytes().startswith(b"\x89MCAP")
+    with pytest.raises(EnpointeError):
+        enpointe.convert("wave.npz", "wave.bvh")
+
+
 def test_rates_units_and_names(home: Path, bvh: Path) -> None:
     """A rate that the file has wrong, one to write, millimetres, and names from an MNM file."""
     write_names({"hips": "Pelvis", "knee": "Shin"}, home / "names.mnm")
@@ -190,7 +211,7 @@ def test_an_ending_can_be_overruled(bvh: Path) -> None:
         ("markers.trc", "a.bvh", "does not become a skeleton's movement"),
         ("leg.bvh", "a.npz", "does not become the dancer's motion"),
         ("leg.bvh", "a.glb", "does not become the dancer's motion"),
-        ("leg.bvh", "a.xyz", ".trc .npz .gltf .glb .xml"),
+        ("leg.bvh", "a.xyz", ".trc .npz .gltf .glb .xml .yaml .yml .mcap"),
         ("leg.bvh", "a", "ends in ''"),
         ("leg.bvh", "leg.bvh", "is what is to be converted"),
         ("leg.bvh", "./there/../leg.bvh", "is what is to be converted"),

@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from enpointe.models import pose_target
 from enpointe.models.dancer import dancer_model
 from enpointe.models.puppet import op3_model, puppet_model
 from enpointe.models.soles import sole_geoms
@@ -14,8 +15,19 @@ from enpointe.motion.contact_schedule import trace_soles
 from enpointe.motion.footprints import Sole, footings
 from enpointe.motion.puppeteering import Puppeteered, puppeteer
 from enpointe.motion.retargeting.body import Body
+from enpointe.posing import vocabulary_score
+
+from .dancing import solved, solver
 
 BODIES = {"puppet": puppet_model, "op3": op3_model}
+
+
+def position(name: str) -> np.ndarray:
+    """The dancer in a position of the vocabulary."""
+    score = vocabulary_score(name)
+    assert score is not None
+    keys = solver()
+    return keys.solve(pose_target(score.resolved()[0], keys.figure)).qpos
 
 
 def waving() -> Motion:
@@ -89,7 +101,7 @@ def test_a_heel_rises_as_far_as_there_is_a_sole_to_stand_on(name: str) -> None:
     foot = np.array([[c, o, s], [o, e, o], [-s, o, c]]).transpose(2, 0, 1)
     flat = np.tile(np.eye(3), (count, 1, 1))
     feet = {
-        side: (np.tile([0.1, y, 0.0], (count, 1)), flat, foot)
+        side: (np.tile([0.1, y, 0.0], (count, 1)), flat, foot, np.tile([0.0, y, 0.1], (count, 1)))
         for side, y in (("left", 0.1), ("right", -0.1))
     }
     standing = {side: np.ones(count, dtype=bool) for side in feet}
@@ -105,9 +117,62 @@ def test_a_heel_rises_as_far_as_there_is_a_sole_to_stand_on(name: str) -> None:
 def test_feet_in_one_place_are_set_beside_each_other() -> None:
     body = Body(puppet_model())
     flat = np.tile(np.eye(3), (5, 1, 1))
-    feet = {side: (np.zeros((5, 3)), flat, flat) for side in ("left", "right")}
+    feet = {
+        side: (np.zeros((5, 3)), flat, flat, np.tile([0.0, y, 0.0], (5, 1)))
+        for side, y in (("left", 0.01), ("right", -0.01))
+    }
     standing = {side: np.ones(5, dtype=bool) for side in feet}
     found = footings(feet, standing, body, 0.33, 100.0)
     apart = found["left"].ankle[0] - found["right"].ankle[0]
     assert abs(apart[1]) >= 0.048
     assert abs(apart[0]) < 1e-9
+
+
+def fifth() -> Motion:
+    """The dancer stands in fifth, closer than bodies of servos can."""
+    qpos = solved("third-port-de-bras").key_poses[0].qpos
+    time = np.arange(0.0, 0.4, 0.01)
+    return Motion.from_qpos(dancer_model(flesh=False), time, np.tile(qpos, (len(time), 1)))
+
+
+@pytest.mark.parametrize("name", sorted(BODIES))
+def test_legs_too_thick_for_a_position_stand_wider(name: str) -> None:
+    """No limb in another at any moment, and it is told by how much the position was opened."""
+    made = puppeteer(fifth(), BODIES[name]())
+    model = made.motion.model
+    data = mujoco.MjData(model)
+    plane = int(mujoco.mjtGeom.mjGEOM_PLANE)
+    for qpos in made.motion.qpos[::5]:
+        data.qpos[:] = qpos
+        mujoco.mj_forward(model, data)
+        limbs = (model.geom_type[data.contact.geom] != plane).all(axis=1)
+        assert data.contact.dist[limbs].min(initial=0.0) > -5e-4
+    assert made.opened > 0.002
+    points = trace_soles(made.motion, sole_geoms(model))
+    assert np.ptp(points[:, made.contacts.bears.all(axis=0), :2], axis=0).max() < 1e-3
+
+
+def test_weight_planned_for_slower_tempi_stays_over_the_feet(made: Puppeteered) -> None:
+    """The centre of mass itself, which is the zero-moment point of a dance that takes for ever."""
+    assert made.weight is not None
+    for k, time in enumerate(made.weight.time):
+        points = made.contacts.points[made.contacts.index(float(time))]
+        bearing = points[made.contacts.at(float(time)), :2]
+        assert np.all(bearing.min(axis=0) < made.weight.com[k, :2])
+        assert np.all(bearing.max(axis=0) > made.weight.com[k, :2])
+
+
+@pytest.mark.parametrize("name", sorted(BODIES))
+def test_feet_go_apart_as_the_dancers_lie(name: str) -> None:
+    """In first to the sides, legs uncrossed, and in fifth one before the other."""
+    body = Body(BODIES[name]())
+    for pose, across in (("feet first", True), ("feet fifth", False)):
+        qpos = position(pose)
+        time = np.arange(0.0, 0.1, 0.01)
+        held = Motion.from_qpos(dancer_model(flesh=False), time, np.tile(qpos, (len(time), 1)))
+        made = puppeteer(held, body.model, balanced=False)
+        data = mujoco.MjData(body.model)
+        data.qpos[:] = made.motion.qpos[-1]
+        mujoco.mj_forward(body.model, data)
+        apart = data.site("left_ankle").xpos - data.site("right_ankle").xpos
+        assert (apart[1] > abs(apart[0])) == across
