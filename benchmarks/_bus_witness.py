@@ -95,7 +95,9 @@ class Witness:
         if not (away and servo.torque_on):
             self._far.pop(described.id, None)
             return False
-        return now - self._far.setdefault(described.id, now) >= LIMITS.error_time
+        # The driver looks once a period, and at the goal before.
+        seen = LIMITS.error_time + 2.0 * self.rig.period
+        return now - self._far.setdefault(described.id, now) >= seen
 
     def driven(self, now: float) -> list[str]:
         """Servos that still follow goals."""
