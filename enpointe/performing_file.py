@@ -331,9 +331,9 @@ def _steps(captured: Captured, contacts: ContactSchedule) -> ContactSchedule:
 
     Taken of what is danced, so that a foot is led from stance to stance in the time it has there.
     """
-    from enpointe.motion.settling import settled
+    from enpointe.motion.settling import led
 
-    return contacts if captured.stored else settled(captured.motion.model, contacts)
+    return contacts if captured.stored else led(contacts)
 
 
 def _within(found: Iterable[Obstacle], asked: tuple[float, float]) -> tuple[Obstacle, ...]:

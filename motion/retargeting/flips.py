@@ -69,9 +69,7 @@ def mended(source: Source) -> Source:
             if foot is not None:
                 frames[foot] = _carried(frames[foot], turns, led, bridges)
             lines.append(_told(f"{side} {name}", bridges, source.time))
-    return replace(
-        source, points=points, frames=frames, warnings=(*source.warnings, *lines)
-    )
+    return replace(source, points=points, frames=frames, warnings=(*source.warnings, *lines))
 
 
 def _told(limb: str, bridges: list[_Bridge], time: Array) -> str:

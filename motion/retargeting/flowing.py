@@ -47,7 +47,7 @@ _CAUTION = (0.1, 1e-3, 1e3)
 _NEAR = 0.1
 """s: samples nearer than this to one whose cost rose go on with more caution."""
 _WORSE, _SPARED = 1.01, 1e-3
-"""A step made things worse where the cost nearby is more than so much times what it was, and more."""
+"""A step made things worse where the cost nearby is more than so much of what it was, and more."""
 _STAYS = 2e-4
 """A sample that would move by less, rad and m, stays."""
 _FALLING = 40.0
@@ -179,7 +179,7 @@ class _Whole:
         return found
 
     def about(self, qpos: Array, *known: _Linear) -> _Linear:
-        """The problem about a guess (T, nq), samples that are as in a known one taken from there."""
+        """The problem about a guess (T, nq); samples that are as in a known one are from there."""
         model, count = self._model, len(qpos)
         hessians, slopes = np.empty((count, model.nv, model.nv)), np.empty((count, model.nv))
         asked, new = np.empty(count), np.ones(count, dtype=bool)

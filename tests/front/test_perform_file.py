@@ -100,6 +100,33 @@ def test_a_span_is_all_that_is_asked_for(still: Path) -> None:
     assert "No physics" in slow.verdict
 
 
+def test_a_file_is_compared_with_its_dance(
+    still: Path, plain_report: list[object], capfd: pytest.CaptureFixture[str]
+) -> None:
+    """The same moments of the file, drawn and danced; an arm that moves slowly is all but kept."""
+    assert _run(["compare", str(still), "--span", "0", "1", "--json"]) == 0
+    figures = one_object(capfd.readouterr().out)
+    drawn, danced = figures["variants"]["file"], figures["variants"]["physical"]
+    assert drawn["duration"] == pytest.approx(danced["duration"])
+    assert drawn["controller"] == "kinematic"
+    assert danced["root_force_max"] == 0.0
+    (apart,) = figures["differences"]
+    assert apart["between"] == ["file", "physical"]
+    assert 0.0 < apart["joint_rms_deg"] < 5.0
+    said = refused(capfd, "compare", str(still), "--effort", "sad")
+    assert "--effort is for scores" in said
+    assert "is for motion files" in refused(capfd, "compare", "first-port-de-bras", "--speed", "2")
+
+
+def test_the_report_of_a_compared_file_has_the_differences(still: Path, home: Path) -> None:
+    files = enpointe.write_report(
+        enpointe.compare_file(still, span=(0.0, 1.0)), home / "out", video=False
+    )
+    page = files["report"].read_text()
+    assert "The file and the dance" in page
+    assert "file and physical" in page
+
+
 def test_a_file_of_flight_alone_is_refused(still: Path, capfd: pytest.CaptureFixture[str]) -> None:
     source = lifted(still, 0.0, 3.0)
     assert "in the air" in refused(capfd, "perform", str(source), "--out", "out")
