@@ -30,9 +30,9 @@ __all__ = ["FilePerformance", "perform_file"]
 SPEEDS = (0.1, 3.0)
 _TRIES = 4
 """How often a stretch is cut where its weight can't be held, and planned again."""
-_FALLS, _BEFORE_A_FALL = 2, 0.5
-"""How often a stretch is danced again without the fall, and s before it that are left out: a fall
-begins before the weight is past saving."""
+_FALLS, _BEFORE_A_FALL = 4, 0.5
+"""How often a stretch is danced again without the fall, the last time nothing but what she danced
+before it; and s before it that are left out: a fall begins before the weight is past saving."""
 FELL = "she falls there when it is tried"
 
 
@@ -179,7 +179,8 @@ def perform_file(
     It is put on the dancer, feet on the floor; the longest stretch that feet can dance is taken;
     its weight is led to where the standing feet can hold it; she starts at rest and comes to rest,
     the first and last half second of the stretch taking a second each (`enpointe.motion.easing`).
-    Where she falls in a capture, that is told, and the longest stretch without the fall is danced.
+    Where she falls in a capture, that is told, and the longest stretch without the fall is danced;
+    after the fourth fall only what she had danced before it.
 
     Args:
         path: A file of any format that `convert` reads, or of the dancer's own.
@@ -244,8 +245,9 @@ def _attempt(
         if fell is None or captured.stored or len(falls) == _FALLS:
             return dance
         falls.append(Obstacle(max(fell - _BEFORE_A_FALL, 0.0), fell, FELL))
+        danced = (chosen.stretch.start, falls[-1].start) if len(falls) == _FALLS else None
         try:
-            chosen = _choose(captured, asked, speed, falls)
+            chosen = _choose(captured, asked, speed, falls, danced)
         except EnpointeError:
             return dance
 
@@ -291,9 +293,21 @@ class _Chosen:
 
 
 def _choose(
-    captured: Captured, asked: tuple[float, float], speed: float, falls: Iterable[Obstacle]
+    captured: Captured,
+    asked: tuple[float, float],
+    speed: float,
+    falls: Iterable[Obstacle],
+    danced: tuple[float, float] | None = None,
 ) -> _Chosen:
     """The longest stretch whose weight can be held, and in which she has not fallen.
+
+    Args:
+        captured: The file.
+        asked: What of it is wanted, s.
+        speed: How much faster than the file.
+        falls: Times that are not to be tried again.
+        danced: Start and end of what is to be danced if there is anything in it; of all that is
+            asked without.
 
     Raises:
         EnpointeError: There is none.
@@ -309,7 +323,8 @@ def _choose(
         possible = stretches(captured.motion, contacts, found, asked)
         if not possible:
             break
-        longest = max(possible, key=lambda each: each.length)
+        wanted = [each for each in possible if danced and _lies_in(each, danced)] or possible
+        longest = max(wanted, key=lambda each: each.length)
         eased = ease(captured.motion, captured.contacts, longest.start, longest.end, speed)
         eased = replace(eased, contacts=_steps(captured, eased.contacts))
         more: tuple[Obstacle, ...] = ()
@@ -324,6 +339,10 @@ def _choose(
     raise EnpointeError(
         f"{captured.path}: no half second of it can be danced on feet: {why or 'too short'}"
     )
+
+
+def _lies_in(stretch: Stretch, span: tuple[float, float]) -> bool:
+    return span[0] - 1e-9 <= stretch.start and stretch.end <= span[1] + 1e-9
 
 
 def _steps(captured: Captured, contacts: ContactSchedule) -> ContactSchedule:

@@ -42,8 +42,9 @@ def stances(model: mujoco.MjModel, contacts: ContactSchedule) -> ContactSchedule
       on a heel that rolls;
     - a foot stays where it rests while it stands: one that lands is seen to stand before it rests,
       and where its heel leaves the floor the rest seems to jump;
-    - farther from there it is on its way, low over the floor, while the other foot stands. If none
-      does it stands already where it will rest, or still where it did.
+    - farther from there it is on its way, low over the floor, while the other foot stands, or is
+      nearer to where it does. If none is, it stands already where it will rest, or still where it
+      did.
 
     Args:
         model: Whose soles they are.
@@ -56,9 +57,8 @@ def stances(model: mujoco.MjModel, contacts: ContactSchedule) -> ContactSchedule
     for side, foot in zip(SIDES, feet, strict=True):
         _flatten(model, contacts.soles, side, bears, points)
         astray.append(_plant(foot, bears, points, period))
-    stand = [bears[:, foot].any(axis=1) & ~away for foot, away in zip(feet, astray, strict=True)]
-    for foot, away, other in zip(feet, astray, reversed(stand), strict=True):
-        bears[np.ix_(away & other, foot)] = False
+    for foot, away, other in zip(feet, astray, reversed(astray), strict=True):
+        bears[np.ix_((away > MOST_SLIDE) & (away > other), foot)] = False
     return _bridged(ContactSchedule(contacts.time, contacts.soles, points, bears))
 
 
@@ -130,9 +130,9 @@ def _plant(foot: NDArray[np.int64], bears: Mask, points: Array, period: float) -
     Its place is the mean of the soles that bear; where others take over, it has not moved.
 
     Returns:
-        (T,), when it seems to stand and is farther than `MOST_SLIDE` from there.
+        (T,), how far it seems to be from there, m; infinite where it does not stand.
     """
-    astray = np.zeros(len(bears), dtype=bool)
+    astray = np.full(len(bears), np.inf)
     for (stance,) in find_objects(label(bears[:, foot].any(axis=1))[0]):
         bearing, placed = bears[stance, foot], points[stance][:, foot, :2]
         both = (bearing[1:] & bearing[:-1])[:, :, None]
@@ -140,7 +140,7 @@ def _plant(foot: NDArray[np.int64], bears: Mask, points: Array, period: float) -
         way = np.vstack([np.zeros(2), np.cumsum(steps, axis=0)])
         back = _home(way, period) - way
         points[stance, foot, :2] += back[:, None]
-        astray[stance] = np.linalg.norm(back, axis=1) > MOST_SLIDE
+        astray[stance] = np.linalg.norm(back, axis=1)
     return astray
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -170,9 +171,10 @@ def test_a_damaged_file_is_refused_as_a_motion(
     assert [p.name for p in home.iterdir()] == ["bad.bvh"]
 
 
-@pytest.mark.slow
-def test_a_fall_is_told_and_danced_without(still: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """She is made to fall once: 2.7 s after the start are 1.7 s of the file."""
+def made_to_fall(
+    monkeypatch: pytest.MonkeyPatch, falls: Callable[[int, Motion], float | None]
+) -> list[Motion]:
+    """Files are taken as captures, and she falls as often as is said; what she tried."""
     from enpointe import captured, danced, performing_file
 
     def as_capture(path: Path, **_: object) -> captured.Captured:
@@ -180,14 +182,21 @@ def test_a_fall_is_told_and_danced_without(still: Path, monkeypatch: pytest.Monk
 
     tried: list[Motion] = []
 
-    def falls_once(motion: Motion, *given: object) -> danced.Physics:
+    def run(motion: Motion, *given: object) -> danced.Physics:
         tried.append(motion)
         physics = danced.run_physics(motion, "pd")
-        measures = replace(physics.measures, fell_at=2.7) if len(tried) == 1 else physics.measures
-        return replace(physics, measures=measures)
+        fell = falls(len(tried), motion)
+        return replace(physics, measures=replace(physics.measures, fell_at=fell))
 
     monkeypatch.setattr(performing_file, "read_captured", as_capture)
-    monkeypatch.setattr(performing_file, "run_physics", falls_once)
+    monkeypatch.setattr(performing_file, "run_physics", run)
+    return tried
+
+
+@pytest.mark.slow
+def test_a_fall_is_told_and_danced_without(still: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """She is made to fall once: 2.7 s after the start are 1.7 s of the file."""
+    tried = made_to_fall(monkeypatch, lambda count, _: 2.7 if count == 1 else None)
     dance = enpointe.perform_file(still, controller="pd")
     assert len(tried) == 2
     assert dance.stood
@@ -197,6 +206,27 @@ def test_a_fall_is_told_and_danced_without(still: Path, monkeypatch: pytest.Monk
     assert dance.stretch.start >= fall.end
     assert dance.others[0].end <= fall.start
     assert "The rest is not danced: she falls there" in dance.verdict
+
+
+@pytest.mark.slow
+def test_after_the_last_fall_only_what_was_danced_is_danced_again(
+    home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Made to fall half way each time, she tries the longer half; at last, the half she danced."""
+    time = np.arange(0.0, 24.005, 0.02)
+    qpos = np.tile(MODEL.key("standing").qpos, (len(time), 1))
+    qpos[:, MODEL.joint("left_elbow_bend").qposadr[0]] += 0.5 + 0.3 * np.sin(4.0 * time + 0.5)
+    save_motion(Motion.from_qpos(MODEL, time, qpos), home / "long.npz")
+    tried = made_to_fall(
+        monkeypatch, lambda count, motion: 0.45 * motion.duration if count < 5 else None
+    )
+    dance = enpointe.perform_file(home / "long.npz", controller="pd")
+    assert len(tried) == 5
+    assert dance.stood
+    ends = [each.start for each in dance.obstacles]
+    assert any(dance.stretch.end == pytest.approx(end, abs=0.03) for end in ends)
+    assert dance.stretch.length < max(each.length for each in dance.others)
+    assert "she falls there" in dance.verdict
 
 
 @pytest.mark.slow
