@@ -30,9 +30,10 @@ __all__ = ["FilePerformance", "perform_file"]
 SPEEDS = (0.1, 3.0)
 _TRIES = 4
 """How often a stretch is cut where its weight can't be held, and planned again."""
-_FALLS, _BEFORE_A_FALL = 4, 0.5
-"""How often a stretch is danced again without the fall, the last time nothing but what she danced
-before it; and s before it that are left out: a fall begins before the weight is past saving."""
+_FALLS, _ABOUT_A_FALL = 4, 0.5
+"""How often a stretch is danced again without the fall, the last time the longest that she danced
+before one; and s on both sides that are left out: a fall begins before the weight is past saving,
+and the step that it is in goes on."""
 FELL = "she falls there when it is tried"
 
 
@@ -180,7 +181,7 @@ def perform_file(
     its weight is led to where the standing feet can hold it; she starts at rest and comes to rest,
     the first and last half second of the stretch taking a second each (`enpointe.motion.easing`).
     Where she falls in a capture, that is told, and the longest stretch without the fall is danced;
-    after the fourth fall only what she had danced before it.
+    after the fourth fall, the longest that she had danced before one.
 
     Args:
         path: A file of any format that `convert` reads, or of the dancer's own.
@@ -226,6 +227,7 @@ def _attempt(
     from enpointe.motion.stretches import Obstacle
 
     falls: list[Obstacle] = []
+    danced: list[tuple[float, float]] = []
     chosen = _choose(captured, asked, speed, falls)
     while True:
         motion, weight = _possible(captured, chosen.eased, controller, progress)
@@ -244,10 +246,12 @@ def _attempt(
         fell = dance.fell_in_file
         if fell is None or captured.stored or len(falls) == _FALLS:
             return dance
-        falls.append(Obstacle(max(fell - _BEFORE_A_FALL, 0.0), fell, FELL))
-        danced = (chosen.stretch.start, falls[-1].start) if len(falls) == _FALLS else None
+        falls.append(Obstacle(max(fell - _ABOUT_A_FALL, 0.0), fell + _ABOUT_A_FALL, FELL))
+        danced.append((chosen.stretch.start, falls[-1].start))
+        longest = max(danced, key=lambda span: span[1] - span[0])
+        known = longest if len(falls) == _FALLS else None
         try:
-            chosen = _choose(captured, asked, speed, falls, danced)
+            chosen = _choose(captured, asked, speed, falls, known)
         except EnpointeError:
             return dance
 
@@ -297,7 +301,7 @@ def _choose(
     asked: tuple[float, float],
     speed: float,
     falls: Iterable[Obstacle],
-    danced: tuple[float, float] | None = None,
+    known: tuple[float, float] | None = None,
 ) -> _Chosen:
     """The longest stretch whose weight can be held, and in which she has not fallen.
 
@@ -306,7 +310,7 @@ def _choose(
         asked: What of it is wanted, s.
         speed: How much faster than the file.
         falls: Times that are not to be tried again.
-        danced: Start and end of what is to be danced if there is anything in it; of all that is
+        known: Start and end of what is to be danced if there is anything in it; of all that is
             asked without.
 
     Raises:
@@ -323,7 +327,7 @@ def _choose(
         possible = stretches(captured.motion, contacts, found, asked)
         if not possible:
             break
-        wanted = [each for each in possible if danced and _lies_in(each, danced)] or possible
+        wanted = [each for each in possible if known and _lies_in(each, known)] or possible
         longest = max(wanted, key=lambda each: each.length)
         eased = ease(captured.motion, captured.contacts, longest.start, longest.end, speed)
         eased = replace(eased, contacts=_steps(captured, eased.contacts))

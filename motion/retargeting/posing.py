@@ -26,7 +26,7 @@ _FIRST, _EACH = 30, 2
 _DIRECTION = 1.0
 """Cost of a segment that points elsewhere, 1/rad."""
 _HAND = 0.3
-_PELVIS, _TORSO, _HEAD = 2.0, 1.0, 0.5
+_PELVIS, _TORSO, _HEAD = 2.3, 1.0, 0.5
 _ROOT, _ROOT_ALOFT = 1.5, 12.0
 """Costs of the pelvis' place, 1/m: over feet it gives way to legs of other lengths, and in the air
 to nothing."""

@@ -202,9 +202,10 @@ def test_a_fall_is_told_and_danced_without(still: Path, monkeypatch: pytest.Monk
     assert dance.stood
     assert not dance.completed
     (fall,) = dance.obstacles
-    assert fall.end == pytest.approx(1.7, abs=0.02)
-    assert dance.stretch.start >= fall.end
-    assert dance.others[0].end <= fall.start
+    assert fall.start == pytest.approx(1.2, abs=0.02)
+    assert fall.end == pytest.approx(2.2, abs=0.02)
+    assert dance.stretch.end <= fall.start
+    assert dance.others[0].start >= fall.end
     assert "The rest is not danced: she falls there" in dance.verdict
 
 
@@ -212,7 +213,7 @@ def test_a_fall_is_told_and_danced_without(still: Path, monkeypatch: pytest.Monk
 def test_after_the_last_fall_only_what_was_danced_is_danced_again(
     home: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Made to fall half way each time, she tries the longer half; at last, the half she danced."""
+    """Made to fall half way each time, she tries the longer half; at last, a half she danced."""
     time = np.arange(0.0, 24.005, 0.02)
     qpos = np.tile(MODEL.key("standing").qpos, (len(time), 1))
     qpos[:, MODEL.joint("left_elbow_bend").qposadr[0]] += 0.5 + 0.3 * np.sin(4.0 * time + 0.5)
