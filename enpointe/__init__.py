@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from enpointe.checking import check as check
     from enpointe.comparing import Comparison as Comparison
     from enpointe.comparing import compare as compare
+    from enpointe.comparing_file import FileComparison as FileComparison
+    from enpointe.comparing_file import compare_file as compare_file
     from enpointe.converting import Conversion as Conversion
     from enpointe.converting import convert as convert
     from enpointe.doctor import diagnose as diagnose
@@ -45,6 +47,7 @@ _HOMES = {
     "Comparison": "enpointe.comparing",
     "Conversion": "enpointe.converting",
     "EnpointeError": "enpointe.errors",
+    "FileComparison": "enpointe.comparing_file",
     "FilePerformance": "enpointe.performing_file",
     "Feasibility": "enpointe.feasibility",
     "Notation": "enpointe.notating",
@@ -52,6 +55,7 @@ _HOMES = {
     "Poses": "enpointe.posing",
     "check": "enpointe.checking",
     "compare": "enpointe.comparing",
+    "compare_file": "enpointe.comparing_file",
     "convert": "enpointe.converting",
     "diagnose": "enpointe.doctor",
     "feasible": "enpointe.feasibility",
@@ -72,6 +76,7 @@ __all__ = [
     "Conversion",
     "EnpointeError",
     "Feasibility",
+    "FileComparison",
     "FilePerformance",
     "Notation",
     "Performance",
@@ -80,6 +85,7 @@ __all__ = [
     "__version__",
     "check",
     "compare",
+    "compare_file",
     "convert",
     "diagnose",
     "feasible",

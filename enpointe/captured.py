@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from enpointe.motion.contact_schedule import ContactSchedule
     from enpointe.motion.formats import Content
 
-__all__ = ["Captured", "Clock", "clock_of", "is_motion_file", "read_captured"]
+__all__ = ["Captured", "Clock", "clock_of", "is_motion_file", "read_captured", "read_content"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +52,7 @@ class Captured:
     Attributes:
         path: The file.
         motion: On the dancer, from 0 s.
-        contacts: Which soles stand, and when, without chatter.
+        contacts: Which soles stand, where and when; of a capture as a body can that does not skate.
         clock: How the file counts its frames.
         warnings: What was doubtful in the file and how it was taken, one line each.
         stored: Whether it is the dancer's own motion, which was put on nobody.
@@ -108,14 +108,14 @@ def read_captured(
     from enpointe.models.dancer import dancer_model
     from enpointe.motion.contact_schedule import contact_schedule
     from enpointe.motion.retargeting import retarget
-    from enpointe.motion.settling import bridged
+    from enpointe.motion.settling import stances
 
     if is_stored(path):
         if mapping is not None or skeleton is not None:
             raise EnpointeError(f"{path} is the dancer's own motion: no map or skeleton applies")
         motion = load_stored(path, dancer, flesh=True)
         return Captured(path, motion, contact_schedule(motion), clock_of(motion), (), True)
-    content = _content(path, skeleton)
+    content = read_content(path, skeleton)
     made = retarget(
         content,
         dancer_model(dancer),
@@ -124,10 +124,21 @@ def read_captured(
     )
     motion = replace(made.motion, name=path.stem)
     clock = clock_of(motion, content)
-    return Captured(path, motion, bridged(made.contacts), clock, made.warnings, False)
+    contacts = stances(motion.model, made.contacts)
+    return Captured(path, motion, contacts, clock, made.warnings, False)
 
 
-def _content(path: Path, skeleton: str | Path | None) -> Content:
+def read_content(path: Path, skeleton: str | Path | None = None) -> Content:
+    """Read a motion file of any format.
+
+    Args:
+        path: The file.
+        skeleton: The ASF file of an AMC file, where it does not lie beside it.
+
+    Raises:
+        FormatError: The file can't be read.
+        EnpointeError: A skeleton for a file that has its own.
+    """
     from enpointe.motion.formats import read
     from enpointe.motion.formats.amc import AMC, read_amc
     from enpointe.motion.formats.registry import sniffed

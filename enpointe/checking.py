@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from enpointe.captured import Clock, clock_of
+from enpointe.captured import Clock, clock_of, read_content
+from enpointe.errors import EnpointeError
 from enpointe.notation import Score, load_score
 from enpointe.performing import perform
 from enpointe.preparing import Progress, silent
@@ -260,6 +261,7 @@ def check(
     style: Style | None = None,
     dancer: Anthropometry | None = None,
     mapping: str | Path | None = None,
+    skeleton: str | Path | None = None,
     progress: Progress = silent,
 ) -> Check:
     """Look at balance and foot contact of a movement, without physics.
@@ -273,6 +275,7 @@ def check(
         style: The method's amounts; of a score alone.
         dancer: Height, mass and sex; a dancer of 1.68 m and 54 kg if None.
         mapping: Which joints of a captured skeleton are which, as a TOML file; found if None.
+        skeleton: The ASF file of an AMC file, where it does not lie beside it.
         progress: Told how far it is.
 
     Raises:
@@ -285,7 +288,10 @@ def check(
         ()
     """
     if isinstance(source, str | Path) and _is_capture(Path(source)):
-        return _checked_capture(Path(source), dancer, mapping, progress)
+        return _checked_capture(Path(source), dancer, mapping, skeleton, progress)
+    if mapping is not None or skeleton is not None:
+        what = source if isinstance(source, str | Path) else "what is to be checked"
+        raise EnpointeError(f"{what} is no captured file: no map or skeleton applies")
     if isinstance(source, str | Path) and is_stored(Path(source)):
         motion = load_stored(Path(source), dancer)
     elif isinstance(source, str | Path | Score):
@@ -313,14 +319,17 @@ def _is_capture(path: Path) -> bool:
 
 
 def _checked_capture(
-    path: Path, dancer: Anthropometry | None, mapping: str | Path | None, progress: Progress
+    path: Path,
+    dancer: Anthropometry | None,
+    mapping: str | Path | None,
+    skeleton: str | Path | None,
+    progress: Progress,
 ) -> Check:
     from enpointe.models.dancer import dancer_model
-    from enpointe.motion.formats import read
     from enpointe.motion.retargeting import retarget
     from enpointe.sim.motion_check import check_motion
 
-    content = read(path)
+    content = read_content(path, skeleton)
     made = retarget(
         content,
         dancer_model(dancer, flesh=False),

@@ -11,16 +11,19 @@ from typing import Annotated
 import typer
 
 import enpointe
+from enpointe.captured import is_motion_file
 from enpointe.console import rows
 from enpointe.errors import EnpointeError
 from enpointe.options import (
     BAD_INPUT,
     DONE,
     NO,
+    CaptureOptions,
     ControllerName,
     ConversionOptions,
     DancerOptions,
     Effort,
+    FileOptions,
     OutputOptions,
     Score,
     SeededOutputOptions,
@@ -50,26 +53,46 @@ app.add_typer(servo_verbs)
 @app.command()
 @unbundled
 def compare(
-    source: Score,
+    source: Annotated[
+        str,
+        typer.Argument(
+            help="A shipped score's name, a .bmn file, or a motion file of any format that convert"
+            " reads."
+        ),
+    ],
     *,
     effort: Effort = None,
     tempo: Tempo = None,
+    file: FileOptions,
     dancer: StyledDancerOptions,
     video: Video = True,
     output: OutputOptions,
 ) -> int:
-    """Dance a score by slerp, by expressive kinematics and by physics, side by side."""
+    """Side by side: a score by slerp, by expression and by physics, or a file and its dance."""
     console = output.console()
+    comparison: enpointe.Comparison | enpointe.FileComparison
     with console.progress() as progress:
-        score = enpointe.load_score(source)
-        comparison = enpointe.compare(
-            score,
-            effort=effort,
-            tempo=tempo,
-            style=dancer.style(),
-            dancer=dancer.anthropometry(),
-            progress=progress,
-        )
+        if is_motion_file(source):
+            file.refuse_for_scores(source, effort=effort, tempo=tempo)
+            comparison = enpointe.compare_file(
+                source,
+                span=file.span,
+                speed=file.rate,
+                dancer=dancer.anthropometry(),
+                mapping=file.mapping,
+                skeleton=file.skeleton,
+                progress=progress,
+            )
+        else:
+            file.refuse(source)
+            comparison = enpointe.compare(
+                enpointe.load_score(source),
+                effort=effort,
+                tempo=tempo,
+                style=dancer.style(),
+                dancer=dancer.anthropometry(),
+                progress=progress,
+            )
         folder = output.folder(f"{Path(source).stem}-compared")
         files = enpointe.write_report(comparison, folder, video=video, progress=progress)
     console.warn(files.warning)
@@ -161,10 +184,6 @@ def check(
     *,
     effort: Effort = None,
     tempo: Tempo = None,
-    mapping: Annotated[
-        Path | None,
-        typer.Option("--map", help="Which joints of the file are which, as a TOML file."),
-    ] = None,
     correct: Annotated[
         bool,
         typer.Option(
@@ -172,6 +191,7 @@ def check(
             " hold it."
         ),
     ] = False,
+    capture: CaptureOptions,
     dancer: StyledDancerOptions,
     output: OutputOptions,
 ) -> int:
@@ -187,7 +207,8 @@ def check(
             tempo=tempo,
             style=dancer.style(),
             dancer=dancer.anthropometry(),
-            mapping=mapping,
+            mapping=capture.mapping,
+            skeleton=capture.skeleton,
             progress=progress,
         )
         files = write_check(found, folder)

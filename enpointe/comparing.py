@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from enpointe.figures import ComparisonFigures
+from enpointe.danced import Danced
+from enpointe.figures import ComparisonFigures, DifferenceFigures
 from enpointe.notation import Score, Side, load_score
 from enpointe.performing import PHRASED, Performance, dance, has_qualities
 from enpointe.preparing import Progress, prepare, silent
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
     from enpointe.models import Anthropometry, Style
 
-__all__ = ["VARIANTS", "Comparison", "Difference", "compare"]
+__all__ = ["VARIANTS", "Comparison", "Difference", "compare", "differences"]
 
 VARIANTS: Mapping[str, tuple[str, str]] = {
     "slerp": ("slerp", "kinematic"),
@@ -47,6 +48,14 @@ class Difference:
     wrist_path_rms: Mapping[Side, float]
     joint_rms_deg: float
 
+    def summary(self) -> DifferenceFigures:
+        """The figures that `--json` prints."""
+        return {
+            "between": [self.first, self.second],
+            "wrist_path_rms": {str(side): far for side, far in self.wrist_path_rms.items()},
+            "joint_rms_deg": self.joint_rms_deg,
+        }
+
 
 @dataclass(frozen=True)
 class Comparison:
@@ -69,14 +78,7 @@ class Comparison:
         """The figures that `--json` prints."""
         return {
             "variants": {name: p.summary() for name, p in self.performances.items()},
-            "differences": [
-                {
-                    "between": [d.first, d.second],
-                    "wrist_path_rms": {str(s): v for s, v in d.wrist_path_rms.items()},
-                    "joint_rms_deg": d.joint_rms_deg,
-                }
-                for d in self.differences
-            ],
+            "differences": [d.summary() for d in self.differences],
         }
 
 
@@ -127,11 +129,12 @@ def compare(
         )
         for variant, (kind, controller) in VARIANTS.items()
     }
-    return Comparison(performances, _differences(performances))
+    return Comparison(performances, differences(performances))
 
 
-def _differences(performances: Mapping[str, Performance]) -> tuple[Difference, ...]:
-    time = performances["slerp"].motion.time
+def differences(performances: Mapping[str, Danced]) -> tuple[Difference, ...]:
+    """How far apart every two performances are, at the times of the first one's reference."""
+    time = next(iter(performances.values())).motion.time
     danced = {name: _at(p, time) for name, p in performances.items()}
     names = list(danced)
     return tuple(
@@ -141,7 +144,7 @@ def _differences(performances: Mapping[str, Performance]) -> tuple[Difference, .
     )
 
 
-def _at(performance: Performance, time: NDArray[np.float64]) -> NDArray[np.float64]:
+def _at(performance: Danced, time: NDArray[np.float64]) -> NDArray[np.float64]:
     motion = performance.danced
     return np.array([motion.sample(float(t))[0] for t in time])
 

@@ -12,6 +12,7 @@ __all__ = [
     "ComparisonFigures",
     "DifferenceFigures",
     "EffortFigures",
+    "FileComparisonFigures",
     "FilePerformanceFigures",
     "FitFigures",
     "FlightFigures",
@@ -141,6 +142,13 @@ class ComparisonFigures(TypedDict):
     """Several performances of one score."""
 
     variants: dict[str, PerformanceFigures]
+    differences: list[DifferenceFigures]
+
+
+class FileComparisonFigures(TypedDict):
+    """A motion file as it is drawn and as it was danced."""
+
+    variants: dict[str, FilePerformanceFigures]
     differences: list[DifferenceFigures]
 
 

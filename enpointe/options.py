@@ -21,6 +21,7 @@ __all__ = [
     "BAD_INPUT",
     "DONE",
     "NO",
+    "CaptureOptions",
     "ControllerName",
     "ConversionOptions",
     "DancerOptions",
@@ -143,7 +144,20 @@ class ConversionOptions:
 
 
 @dataclass(frozen=True)
-class FileOptions:
+class CaptureOptions:
+    """How a captured file is read."""
+
+    mapping: Annotated[
+        Path | None,
+        typer.Option("--map", help="Of a motion file: which joints are which, as a TOML file."),
+    ] = None
+    skeleton: Annotated[
+        Path | None, typer.Option(help="Of an AMC file: its ASF file, where it lies elsewhere.")
+    ] = None
+
+
+@dataclass(frozen=True)
+class FileOptions(CaptureOptions):
     """What of a motion file is danced, and how it is read."""
 
     span: Annotated[
@@ -156,13 +170,11 @@ class FileOptions:
     speed: Annotated[
         float | None, typer.Option(help="Of a motion file: how much faster than it; 1 if left out.")
     ] = None
-    mapping: Annotated[
-        Path | None,
-        typer.Option("--map", help="Of a motion file: which joints are which, as a TOML file."),
-    ] = None
-    skeleton: Annotated[
-        Path | None, typer.Option(help="Of an AMC file: its ASF file, where it lies elsewhere.")
-    ] = None
+
+    @property
+    def rate(self) -> float:
+        """How much faster than the file."""
+        return 1.0 if self.speed is None else self.speed
 
     def refuse(self, source: str) -> None:
         """Refuse these options for a score.
@@ -175,6 +187,19 @@ class FileOptions:
         for name, value in given.items():
             if value is not None:
                 raise EnpointeError(f"{source} is a score: --{name} is for motion files")
+
+    @staticmethod
+    def refuse_for_scores(source: str, **given: object) -> None:
+        """Refuse, for a motion file, what is asked of scores.
+
+        Raises:
+            EnpointeError: One is given.
+        """
+        for name, value in given.items():
+            if value is not None:
+                raise EnpointeError(
+                    f"{source} is a motion file: --{name} is for scores; use --speed or --span"
+                )
 
 
 @dataclass(frozen=True)

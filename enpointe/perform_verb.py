@@ -11,7 +11,6 @@ import typer
 import enpointe
 from enpointe.captured import is_motion_file
 from enpointe.console import rows
-from enpointe.errors import EnpointeError
 from enpointe.options import (
     DONE,
     NO,
@@ -69,11 +68,7 @@ def perform(
 ) -> int:
     """Dance a score or a motion file under gravity, and write a report of it."""
     if is_motion_file(source):
-        for name, value in (("effort", effort), ("tempo", tempo), ("hold", hold)):
-            if value is not None:
-                raise EnpointeError(
-                    f"{source} is a motion file: --{name} is for scores; use --speed or --span"
-                )
+        file.refuse_for_scores(source, effort=effort, tempo=tempo, hold=hold)
         chosen = controller or ControllerName.WHOLEBODY
         return _perform_file(source, chosen, file, dancer, video, output)
     file.refuse(source)
@@ -113,7 +108,7 @@ def _perform_file(
         dance = enpointe.perform_file(
             source,
             span=file.span,
-            speed=1.0 if file.speed is None else file.speed,
+            speed=file.rate,
             controller=controller.value,
             dancer=dancer.anthropometry(),
             mapping=file.mapping,

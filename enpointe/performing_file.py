@@ -30,9 +30,10 @@ __all__ = ["FilePerformance", "perform_file"]
 SPEEDS = (0.1, 3.0)
 _TRIES = 4
 """How often a stretch is cut where its weight can't be held, and planned again."""
-_FALLS, _BEFORE_A_FALL = 2, 0.5
-"""How often a stretch is danced again without the fall, and s before it that are left out: a fall
-begins before the weight is past saving."""
+_FALLS, _ABOUT_A_FALL = 4, 0.5
+"""How often a stretch is danced again without the fall, the last time the longest that she danced
+before one; and s on both sides that are left out: a fall begins before the weight is past saving,
+and the step that it is in goes on."""
 FELL = "she falls there when it is tried"
 
 
@@ -179,7 +180,8 @@ def perform_file(
     It is put on the dancer, feet on the floor; the longest stretch that feet can dance is taken;
     its weight is led to where the standing feet can hold it; she starts at rest and comes to rest,
     the first and last half second of the stretch taking a second each (`enpointe.motion.easing`).
-    Where she falls in a capture, that is told, and the longest stretch without the fall is danced.
+    Where she falls in a capture, that is told, and the longest stretch without the fall is danced;
+    after the fourth fall, the longest that she had danced before one.
 
     Args:
         path: A file of any format that `convert` reads, or of the dancer's own.
@@ -225,6 +227,7 @@ def _attempt(
     from enpointe.motion.stretches import Obstacle
 
     falls: list[Obstacle] = []
+    danced: list[tuple[float, float]] = []
     chosen = _choose(captured, asked, speed, falls)
     while True:
         motion, weight = _possible(captured, chosen.eased, controller, progress)
@@ -243,9 +246,12 @@ def _attempt(
         fell = dance.fell_in_file
         if fell is None or captured.stored or len(falls) == _FALLS:
             return dance
-        falls.append(Obstacle(max(fell - _BEFORE_A_FALL, 0.0), fell, FELL))
+        falls.append(Obstacle(max(fell - _ABOUT_A_FALL, 0.0), fell + _ABOUT_A_FALL, FELL))
+        danced.append((chosen.stretch.start, falls[-1].start))
+        longest = max(danced, key=lambda span: span[1] - span[0])
+        known = longest if len(falls) == _FALLS else None
         try:
-            chosen = _choose(captured, asked, speed, falls)
+            chosen = _choose(captured, asked, speed, falls, known)
         except EnpointeError:
             return dance
 
@@ -291,9 +297,21 @@ class _Chosen:
 
 
 def _choose(
-    captured: Captured, asked: tuple[float, float], speed: float, falls: Iterable[Obstacle]
+    captured: Captured,
+    asked: tuple[float, float],
+    speed: float,
+    falls: Iterable[Obstacle],
+    known: tuple[float, float] | None = None,
 ) -> _Chosen:
     """The longest stretch whose weight can be held, and in which she has not fallen.
+
+    Args:
+        captured: The file.
+        asked: What of it is wanted, s.
+        speed: How much faster than the file.
+        falls: Times that are not to be tried again.
+        known: Start and end of what is to be danced if there is anything in it; of all that is
+            asked without.
 
     Raises:
         EnpointeError: There is none.
@@ -309,7 +327,8 @@ def _choose(
         possible = stretches(captured.motion, contacts, found, asked)
         if not possible:
             break
-        longest = max(possible, key=lambda each: each.length)
+        wanted = [each for each in possible if known and _lies_in(each, known)] or possible
+        longest = max(wanted, key=lambda each: each.length)
         eased = ease(captured.motion, captured.contacts, longest.start, longest.end, speed)
         eased = replace(eased, contacts=_steps(captured, eased.contacts))
         more: tuple[Obstacle, ...] = ()
@@ -326,14 +345,18 @@ def _choose(
     )
 
 
+def _lies_in(stretch: Stretch, span: tuple[float, float]) -> bool:
+    return span[0] - 1e-9 <= stretch.start and stretch.end <= span[1] + 1e-9
+
+
 def _steps(captured: Captured, contacts: ContactSchedule) -> ContactSchedule:
     """Steps that a body can take; the dancer's own are that already.
 
     Taken of what is danced, so that a foot is led from stance to stance in the time it has there.
     """
-    from enpointe.motion.settling import settled
+    from enpointe.motion.settling import led
 
-    return contacts if captured.stored else settled(captured.motion.model, contacts)
+    return contacts if captured.stored else led(contacts)
 
 
 def _within(found: Iterable[Obstacle], asked: tuple[float, float]) -> tuple[Obstacle, ...]:

@@ -10,7 +10,7 @@ from scipy.ndimage import find_objects, label
 from enpointe.models.anatomy import SIDES
 from enpointe.motion.contact_schedule import ContactSchedule, without_chatter
 
-__all__ = ["SHORTEST_FLIGHT", "bridged", "settled"]
+__all__ = ["SHORTEST_FLIGHT", "led", "settled", "stances"]
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -18,48 +18,76 @@ SHORTEST_FLIGHT = 0.1
 """s: a shorter time without a sole on the floor is a step seen late; what stood stays down until
 something else stands."""
 MOST_SLIDE = 0.03
-"""m: a standing foot that slides no farther is taken to stand still; feet that are dragged farther
-go their way."""
-
-
-def bridged(contacts: ContactSchedule) -> ContactSchedule:
-    """The same without contacts, and gaps in them, too short to shift weight in.
-
-    Args:
-        contacts: Evenly sampled.
-    """
-    period = float(np.median(np.diff(contacts.time)))
-    bears, points = without_chatter(contacts.bears, period), contacts.points.copy()
-    _carry(bears, points, period)
-    return ContactSchedule(contacts.time, contacts.soles, points, bears)
+"""m: a standing foot that slides no farther is taken to stand still; one that is farther from where
+it rests is on its way."""
+_RESTING, _RESTS = 0.1, 0.08
+"""m/s and s: slower than the first for as long as the second, a foot rests."""
 
 
 def settled(model: mujoco.MjModel, contacts: ContactSchedule) -> ContactSchedule:
-    """The same stances on the floor, and between them a way from each to the next without jumps.
-
-    Where a captured foot comes and goes, its soles jump by centimetres from sample to sample: they
-    are seen to stand, or not to. Here
-
-    - contacts, and gaps in them, too short to shift weight in are left out;
-    - a foot that comes down with its heel first, or leaves so, is flat meanwhile: nobody balances
-      on a heel that rolls;
-    - a foot stays in its place while it stands: one that lands is seen to stand before it rests,
-      and where its heel leaves the floor the rest seems to jump;
-    - a sole keeps the places at which it stands, at height 0, and goes from one stance to the next
-      by a smooth step.
+    """Stances, and between them a way from each to the next without jumps.
 
     Args:
         model: Whose soles they are.
         contacts: Evenly sampled.
     """
-    contacts = bridged(contacts)
+    return led(stances(model, contacts))
+
+
+def stances(model: mujoco.MjModel, contacts: ContactSchedule) -> ContactSchedule:
+    """The same contacts as a body can have them that does not skate.
+
+    - contacts, and gaps in them, too short to shift weight in are left out;
+    - a foot that comes down with its heel first, or leaves so, is flat meanwhile: nobody balances
+      on a heel that rolls;
+    - a foot stays where it rests while it stands: one that lands is seen to stand before it rests,
+      and where its heel leaves the floor the rest seems to jump;
+    - farther from there it is on its way, low over the floor, while the other foot stands, or is
+      nearer to where it does. If none is, it stands already where it will rest, or still where it
+      did.
+
+    Args:
+        model: Whose soles they are.
+        contacts: Evenly sampled.
+    """
+    contacts, period = _bridged(contacts), _period(contacts)
     bears, points = contacts.bears.copy(), contacts.points.copy()
-    for side in SIDES:
+    feet = [_soles_of(model, contacts.soles, side) for side in SIDES]
+    astray = []
+    for side, foot in zip(SIDES, feet, strict=True):
         _flatten(model, contacts.soles, side, bears, points)
-        _plant(_soles_of(model, contacts.soles, side), bears, points)
-    for sole, standing in enumerate(bears.T):
+        astray.append(_plant(foot, bears, points, period))
+    for foot, away, other in zip(feet, astray, reversed(astray), strict=True):
+        bears[np.ix_((away > MOST_SLIDE) & (away > other), foot)] = False
+    return _bridged(ContactSchedule(contacts.time, contacts.soles, points, bears))
+
+
+def led(contacts: ContactSchedule) -> ContactSchedule:
+    """The same stances; soles go from each to the next by a smooth step at height 0.
+
+    Where a captured foot comes and goes, its soles jump by centimetres from sample to sample: they
+    are seen to stand, or not to.
+
+    Args:
+        contacts: Evenly sampled.
+    """
+    contacts = _bridged(contacts)
+    points = contacts.points.copy()
+    for sole, standing in enumerate(contacts.bears.T):
         if standing.any():
             points[:, sole] = _stepped(points[:, sole], standing)
+    return ContactSchedule(contacts.time, contacts.soles, points, contacts.bears)
+
+
+def _period(contacts: ContactSchedule) -> float:
+    return float(np.median(np.diff(contacts.time)))
+
+
+def _bridged(contacts: ContactSchedule) -> ContactSchedule:
+    """The same without contacts, and gaps in them, too short to shift weight in."""
+    period = _period(contacts)
+    bears, points = without_chatter(contacts.bears, period), contacts.points.copy()
+    _carry(bears, points, period)
     return ContactSchedule(contacts.time, contacts.soles, points, bears)
 
 
@@ -96,19 +124,54 @@ def _soles_of(model: mujoco.MjModel, soles: NDArray[np.int64], side: str) -> NDA
     return np.flatnonzero(np.isin(model.geom_bodyid[soles], parts))
 
 
-def _plant(foot: NDArray[np.int64], bears: Mask, points: Array) -> None:
-    """Keep a foot in its place for as long as it stands; it may turn there.
+def _plant(foot: NDArray[np.int64], bears: Mask, points: Array, period: float) -> Mask:
+    """Keep a foot where it rests for as long as it stands; it may turn there.
 
     Its place is the mean of the soles that bear; where others take over, it has not moved.
+
+    Returns:
+        (T,), how far it seems to be from there, m; infinite where it does not stand.
     """
+    astray = np.full(len(bears), np.inf)
     for (stance,) in find_objects(label(bears[:, foot].any(axis=1))[0]):
         bearing, placed = bears[stance, foot], points[stance][:, foot, :2]
         both = (bearing[1:] & bearing[:-1])[:, :, None]
         steps = np.sum(np.diff(placed, axis=0) * both, axis=1) / np.maximum(both.sum(axis=1), 1)
         way = np.vstack([np.zeros(2), np.cumsum(steps, axis=0)])
-        back = np.median(way, axis=0) - way
-        far = np.maximum(np.linalg.norm(back, axis=1, keepdims=True), 1e-9)
-        points[stance, foot, :2] += (back * np.minimum(1.0, MOST_SLIDE / far))[:, None]
+        back = _home(way, period) - way
+        points[stance, foot, :2] += back[:, None]
+        astray[stance] = np.linalg.norm(back, axis=1)
+    return astray
+
+
+def _home(way: Array, period: float) -> Array:
+    """(K, 2), where a foot that goes along a way (K, 2) rests, or comes to rest, or did."""
+    speed = np.linalg.norm(np.diff(way, axis=0, prepend=way[:1]), axis=1) / period
+    rests = [
+        run
+        for (run,) in find_objects(label(speed < _RESTING)[0])
+        if (run.stop - run.start) * period >= _RESTS
+    ] or [slice(0, len(way))]
+    places = [way[rests[0]]]
+    ends = [rests[0].stop]
+    for run in rests[1:]:
+        here = np.median(way[run], axis=0)
+        if np.linalg.norm(here - np.median(places[-1], axis=0)) < MOST_SLIDE:
+            places[-1] = np.vstack([places[-1], way[run]])
+            ends[-1] = run.stop
+        else:
+            # On its way from one place to another it is at the nearer.
+            there = np.median(places[-1], axis=0)
+            between = way[ends[-1] : run.start]
+            nearer = np.linalg.norm(between - there, axis=1) < np.linalg.norm(
+                between - here, axis=1
+            )
+            ends[-1] += int(nearer.sum())
+            places.append(way[run])
+            ends.append(run.stop)
+    ends[-1] = len(way)
+    lengths = np.diff([0, *ends])
+    return np.repeat([np.median(place, axis=0) for place in places], lengths, axis=0)
 
 
 def _stepped(points: Array, standing: Mask) -> Array:

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from PIL import Image
 
+from enpointe.comparing import Difference
+from enpointe.comparing_file import FileComparison
 from enpointe.performing_file import FilePerformance
 from enpointe.preparing import Progress
 from enpointe.report import words
@@ -33,9 +37,13 @@ MOMENTS = 6
 
 
 def draw_file(
-    dance: FilePerformance, video: bool, progress: Progress
+    shown: FilePerformance | FileComparison, video: bool, progress: Progress
 ) -> tuple[dict[str, tuple[str, bytes]], Page, str | None]:
     """The files beside the page by name, the page, and the warning about pictures."""
+    if isinstance(shown, FileComparison):
+        dance, filmed, apart = shown.physical, shown.performances, shown.differences
+    else:
+        dance, filmed, apart = shown, {"": shown}, ()
     times = np.linspace(0.0, dance.danced.duration, MOMENTS)
     asked = [dance.captured.motion.sample(dance.eased.source_time(float(t)))[0] for t in times]
     danced = [dance.danced.sample(float(t))[0] for t in times]
@@ -45,7 +53,7 @@ def draw_file(
     drawn, warning = stills(model, [*asked, *danced], [view])
     progress("pictures", 1, 1)
     pairs = [[drawn[i][0], drawn[i + MOMENTS][0]] for i in range(MOMENTS)]
-    film = film_of({"": dance}, progress) if video else None
+    film = film_of(filmed, progress) if video else None
     titles = [_moment(dance, float(t)) for t in times]
     sheet = contact_sheet(pairs, titles, [("left the file, right danced", False)] * MOMENTS)
     parts = {"moments": ("moments.png", sheet)}
@@ -57,6 +65,7 @@ def draw_file(
         _spans_section(dance),
         film_section(film, dance.recording is not None),
         _moments_section(pairs, titles),
+        _differences_section(apart) if apart else None,
         *((contacts_section(figures),) if dance.recording is not None else ()),
         *physics_sections(dance),
     ]
@@ -73,6 +82,14 @@ def draw_file(
         footer(model),
     )
     return parts, page, warning
+
+
+def _differences_section(apart: Sequence[Difference]) -> Section:
+    table = words.difference_table(apart)
+    meaning = Paragraph(
+        "The file as it is drawn, on the dancer and at the same clock, beside what she danced."
+    )
+    return Section("differences", "The file and the dance", (meaning, table))
 
 
 def _facts(dance: FilePerformance) -> tuple[tuple[str, str], ...]:

@@ -177,7 +177,7 @@ def comparison_page(comparison: Comparison, material: Material) -> Page:
             (_fit_table(first.effort, {n: fit_logistic(p) for n, p in danced.items()}),),
         ),
         Section("figures", "Figures", (words.variant_table(summaries),)),
-        Section("differences", "Differences", (words.difference_table(comparison),)),
+        Section("differences", "Differences", (words.difference_table(comparison.differences),)),
         _poses_section(first.score, first.choreography.key_poses, material),
         _certificate_section(first.choreography.key_poses),
     ]

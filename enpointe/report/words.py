@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from enpointe.comparing import Comparison
+from enpointe.comparing import Difference
 from enpointe.danced import HELD_UP, Danced
 from enpointe.models import KeyPose
 from enpointe.performing import Performance
@@ -186,7 +186,7 @@ def variant_table(summaries: Mapping[str, Mapping[str, object]]) -> Table:
     return Table("Figures of each variant", ("Figure", *summaries), tuple(rows))
 
 
-def difference_table(comparison: Comparison) -> Table:
+def difference_table(differences: Sequence[Difference]) -> Table:
     """How far apart the variants are."""
     rows = tuple(
         Row(
@@ -197,9 +197,9 @@ def difference_table(comparison: Comparison) -> Table:
             ),
             f"difference-{d.first}-{d.second}",
         )
-        for d in comparison.differences
+        for d in differences
     )
-    sides = [f"{side} wrist" for side in comparison.differences[0].wrist_path_rms]
+    sides = [f"{side} wrist" for side in differences[0].wrist_path_rms]
     return Table(
         "Between the variants, at equal times, root mean square",
         ("Between", *sides, "all joints"),

@@ -6,6 +6,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from enpointe.comparing import Comparison
+from enpointe.comparing_file import FileComparison
 from enpointe.files import atomic_path, write_bytes
 from enpointe.models import KeyPose
 from enpointe.notation import Score
@@ -25,6 +26,8 @@ from enpointe.sim.camera import View
 
 __all__ = ["ReportFiles", "write_report"]
 
+Reported = Performance | Comparison | Poses | FilePerformance | FileComparison
+
 
 class ReportFiles(dict[str, Path]):
     """The files of a report by what they are: report, stave, key_poses, and video if there is one.
@@ -39,7 +42,7 @@ class ReportFiles(dict[str, Path]):
 
 
 def write_report(
-    dance: Performance | Comparison | Poses | FilePerformance,
+    dance: Reported,
     out: Path,
     *,
     video: bool = True,
@@ -52,7 +55,7 @@ def write_report(
     and `moments.png` instead of key poses.
 
     Args:
-        dance: What `perform`, `perform_file`, `compare` or `pose` returned.
+        dance: What `perform`, `perform_file`, `compare`, `compare_file` or `pose` returned.
         out: The folder; made if it isn't there.
         video: Whether to paint a film; poses have none.
         progress: Told how far it is.
@@ -90,10 +93,10 @@ def write_report(
 
 
 def _draw(
-    dance: Performance | Comparison | Poses | FilePerformance, video: bool, progress: Progress
+    dance: Reported, video: bool, progress: Progress
 ) -> tuple[dict[str, tuple[str, bytes]], Page, str | None]:
     """The files beside the page by name, the page, and the warning."""
-    if isinstance(dance, FilePerformance):
+    if isinstance(dance, FilePerformance | FileComparison):
         return draw_file(dance, video, progress)
     if isinstance(dance, Poses):
         score, poses = dance.score, dance.key_poses

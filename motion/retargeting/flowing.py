@@ -46,9 +46,13 @@ _CAUTION = (0.1, 1e-3, 1e3)
 """Cost of going anywhere in a step, 1/rad^2: at first, least and most."""
 _NEAR = 0.1
 """s: samples nearer than this to one whose cost rose go on with more caution."""
+_WORSE, _SPARED = 1.01, 1e-3
+"""A step made things worse where the cost nearby is more than so much of what it was, and more."""
+_STAYS = 2e-4
+"""A sample that would move by less, rad and m, stays."""
 _FALLING = 40.0
 """Cost of a centre of mass that is off its parabola, 1/m."""
-_STEPS, _STEPS_FLYING, _DONE = 12, 5, 2e-3
+_STEPS, _STEPS_FLYING, _DONE = 16, 6, 5e-3
 """Steps at most, and what share of the cost the last saves."""
 _LONGEST = 0.25
 """No joint goes farther in one step, rad, nor the root, m."""
@@ -152,14 +156,15 @@ class _Whole:
             if progress is not None:
                 progress(count, steps)
             step = _shortened(self.step(here, caution), reach)
-            there = self.about(self.moved(here.qpos, step))
-            worse = _nearby(there.cost, reach) > _nearby(here.cost, reach)
+            step[np.abs(step).max(axis=1) < _STAYS] = 0.0
+            there = self.about(self.moved(here.qpos, step), here)
+            worse = _nearby(there.cost, reach) > _WORSE * _nearby(here.cost, reach) + _SPARED
             caution = np.clip(np.where(worse, 10.0, 0.2) * caution, *_CAUTION[1:])
             if worse.any():
                 # Back where it went wrong, and smoothly from there to where it went well.
-                share = 1.0 - _nearby(maximum_filter1d(worse * 1.0, 4 * reach + 1), reach)
-                back = self.moved(here.qpos, share[:, None] * step)
-                there = self.about(back, there, share < 1.0)
+                wrong = maximum_filter1d(worse * 1.0, 2 * reach + 1)
+                share = np.round(1.0 - _nearby(wrong, reach), 3)
+                there = self.about(self.moved(here.qpos, share[:, None] * step), here, there)
             gained = float(here.cost.sum() - there.cost.sum())
             here = there
             if abs(gained) < _DONE * float(here.cost.sum()):
@@ -167,20 +172,24 @@ class _Whole:
         return here.qpos
 
     def moved(self, qpos: Array, step: Array) -> Array:
-        """Configurations (T, nq) after a step (T, nv)."""
+        """Configurations (T, nq) after a step (T, nv); those that make none are the same."""
         found = qpos.copy()
-        for row, moved in zip(found, step, strict=True):
-            mujoco.mj_integratePos(self._model, row, moved, 1.0)
+        for i in np.flatnonzero(step.any(axis=1)):
+            mujoco.mj_integratePos(self._model, found[i], step[i], 1.0)
         return found
 
-    def about(self, qpos: Array, like: _Linear | None = None, but: Mask | None = None) -> _Linear:
-        """The problem about a guess (T, nq), which is another but for some samples (T,)."""
+    def about(self, qpos: Array, *known: _Linear) -> _Linear:
+        """The problem about a guess (T, nq); samples that are as in a known one are from there."""
         model, count = self._model, len(qpos)
+        hessians, slopes = np.empty((count, model.nv, model.nv)), np.empty((count, model.nv))
+        asked, new = np.empty(count), np.ones(count, dtype=bool)
+        for each in known:
+            same = new & (qpos == each.qpos).all(axis=1)
+            hessians[same], slopes[same] = each.hessians[same], each.slopes[same]
+            asked[same] = each.asked[same]
+            new &= ~same
         configuration = mink.Configuration(model, q=qpos[0])
-        hessians = np.empty((count, model.nv, model.nv)) if like is None else like.hessians
-        slopes = np.empty((count, model.nv)) if like is None else like.slopes
-        asked = np.empty(count) if like is None else like.asked
-        for i in np.arange(count) if but is None else np.flatnonzero(but):
+        for i in np.flatnonzero(new):
             configuration.update(qpos[i])
             hessians[i], slopes[i], asked[i] = self._asked(configuration, int(i))
         changes = self._changes(qpos)

@@ -26,12 +26,14 @@ _FIRST, _EACH = 30, 2
 _DIRECTION = 1.0
 """Cost of a segment that points elsewhere, 1/rad."""
 _HAND = 0.3
-_PELVIS, _TORSO, _HEAD = 2.0, 1.0, 0.5
+_PELVIS, _TORSO, _HEAD = 2.3, 1.0, 0.5
 _ROOT, _ROOT_ALOFT = 1.5, 12.0
 """Costs of the pelvis' place, 1/m: over feet it gives way to legs of other lengths, and in the air
 to nothing."""
 _ALOFT = 0.15
 """s: it goes from the one to the other in so long."""
+_NEARS = 0.1
+"""s: a foot comes to the floor, and leaves it, over so long before and after."""
 _PLANTED, _FREE = 30.0, 0.5
 """Costs of an ankle's place, 1/m, on the floor and in the air."""
 _LAID, _LOOSE = 1.0, 0.15
@@ -141,13 +143,14 @@ class Asking:
         for part, cost in (("pelvis", _PELVIS), ("torso", _TORSO), ("head", _HEAD)):
             if part in body.bodies and part in plan.frames:
                 self._add_turned(body, part, plan.frames[part], cost)
-        self._pelvis = self._turned["pelvis"]
         down = np.logical_or(*(plan.feet[side].kind != NONE for side in SIDES))
         near = ramped(down, _ALOFT, 1.0 / float(plan.time[1]))
         self._root = near * _ROOT + (1.0 - near) * _ROOT_ALOFT
         self._ankles: dict[str, mink.FrameTask] = {}
+        self._near: dict[str, Array] = {}
         for side in SIDES:
             foot = plan.feet[side]
+            self._near[side] = ramped(foot.kind != NONE, _NEARS, 1.0 / float(plan.time[1]))
             self._add_turned(body, f"{side}_foot", foot.turn, _LAID)
             if f"{side}_toe" in body.bodies:
                 bent = Rotation.from_matrix(foot.turn) * Rotation.from_euler(
@@ -156,6 +159,10 @@ class Asking:
                 self._add_turned(body, f"{side}_toe", bent.as_matrix(), _LAID)
             site = model.site(body.sites[f"{side}_ankle"]).name
             self._ankles[side] = mink.FrameTask(site, "site", _PLANTED, 0.0)
+        self._placed: dict[str, mink.FrameTask] = {}
+        self._targets: dict[str, list[mink.SE3]] = {}
+        self._costs: dict[str, Array] = {}
+        self._ask_all()
         self._posture = mink.PostureTask(model, cost=_posture_cost(model))
         self._posture.set_target(body.rest)
         steady = mink.DampingTask(model, cost=_steady_cost(body))
@@ -194,22 +201,35 @@ class Asking:
         )
 
     def ask(self, i: int) -> None:
-        """Set the targets of sample `i`."""
+        """Set the targets and costs of sample `i`."""
         self._directions.target = self._wanted[i]
-        self._pelvis.set_position_cost(float(self._root[i]))
-        for part, task in self._turned.items():
-            place = self.plan.pelvis[i] if part == "pelvis" else np.zeros(3)
-            task.set_target(mink.SE3(np.concatenate([self.frames[part][i], place])))
+        for name, task in self._placed.items():
+            task.transform_target_to_world = self._targets[name][i]
+            task.cost = self._costs[name][i]
+
+    def _ask_all(self) -> None:
+        """Targets and costs of every sample: each is asked for some thirty times."""
+        plan = self.plan
+        for part in self._turned:
+            place = plan.pelvis if part == "pelvis" else np.zeros_like(plan.pelvis)
+            self._aim(part, np.hstack([self.frames[part], place]), self._turned[part])
+        self._costs["pelvis"][:, :3] = self._root[:, None]
         for side, task in self._ankles.items():
-            foot = self.plan.feet[side]
-            stands = foot.kind[i] != NONE
-            task.set_position_cost(_PLANTED if stands else _FREE)
-            task.set_target(mink.SE3.from_translation(foot.ankle[i]))
+            near = self._near[side][:, None]
+            upright = np.tile([1.0, 0.0, 0.0, 0.0], (len(near), 1))
+            self._aim(side, np.hstack([upright, plan.feet[side].ankle]), task)
+            self._costs[side][:, :3] = _FREE * (_PLANTED / _FREE) ** near
             for part in (f"{side}_foot", f"{side}_toe"):
                 if part in self._turned:
                     # How a foot in the air is rolled about itself, captures do not know.
                     loose = _LOOSE * self._across[part]
-                    self._turned[part].set_orientation_cost(_LAID if stands else loose)
+                    self._costs[part][:, 3:] = loose + near * (_LAID - loose)
+
+    def _aim(self, name: str, targets: Array, task: mink.FrameTask) -> None:
+        """Keep what a frame is asked: turns and places (T, 7), and its costs, its own without."""
+        self._placed[name] = task
+        self._targets[name] = [mink.SE3(target) for target in targets]
+        self._costs[name] = np.tile(task.cost, (len(targets), 1))
 
 
 def _posture_cost(model: mujoco.MjModel) -> Array:

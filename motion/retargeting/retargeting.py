@@ -18,6 +18,7 @@ from enpointe.motion.formats.content import Content, Payload
 from enpointe.motion.formats.registry import read
 from enpointe.motion.motion import Motion
 from enpointe.motion.retargeting.body import BALL, HEEL, NONE, TIP, Body
+from enpointe.motion.retargeting.flips import mended
 from enpointe.motion.retargeting.floor import levelled, steps_of
 from enpointe.motion.retargeting.flowing import flowing
 from enpointe.motion.retargeting.joint_map import JointMap
@@ -94,7 +95,7 @@ def retarget(
         mapping = JointMap.load(mapping)
     mapping.check(point_names(payload), name)
     body = model if isinstance(model, Body) else Body(dancer_model() if model is None else model)
-    source = levelled(source_of(payload, mapping))
+    source = levelled(mended(source_of(payload, mapping)))
     scale = body.leg / _leg(source)
     steps = steps_of(source, body, scale)
     plan = make_plan(source, body, steps, scale)

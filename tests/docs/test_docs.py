@@ -87,7 +87,8 @@ def test_every_command_exists(page: str, words: list[str]) -> None:
         from enpointe.motion import find_effort
 
         find_effort(given["--effort"])
-    file = (".bmn", ".amc", ".bvh", ".npz") if verb == "perform" else (".bmn",)
+    motions = (".amc", ".bvh", ".npz") if verb in ("perform", "compare") else ()
+    file = (".bmn", *motions)
     if verb in ("perform", "compare", "sweep") and rest and not rest[0].endswith(file):
         poses = enpointe.notation.names() if "--hold" in rest else ()
         assert rest[0] in (*enpointe.notation.shipped_scores(), *poses)

@@ -92,6 +92,21 @@ def test_what_is_no_motion_is_refused(home: Path, capfd: pytest.CaptureFixture[s
     assert "no motion file that is known" in refused(capfd, "check", "text.npz")
 
 
+def test_an_amc_is_checked_with_a_skeleton_from_elsewhere(
+    data_dir: Path, home: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    take = data_dir / "cmu_05" / "05_14.amc"
+    if not take.exists():
+        pytest.skip("no data here")
+    (home / "alone.amc").write_text(take.read_text().partition("\n61\n")[0] + "\n")
+    assert "asf" in refused(capfd, "check", "alone.amc").lower()
+    skeleton = str(data_dir / "cmu_05" / "05.asf")
+    assert _run(["check", "alone.amc", "--skeleton", skeleton, "--json"]) in (0, 1)
+    assert one_object(capfd.readouterr().out)["duration"] == pytest.approx(59 / 120)
+    said = refused(capfd, "check", "first-port-de-bras", "--skeleton", skeleton)
+    assert "no map or skeleton applies" in said
+
+
 @pytest.mark.parametrize(
     ("take", "frames"), [("05_14", (230, 360)), ("05_11", (160, 280)), ("05_16", (180, 290))]
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -100,6 +101,33 @@ def test_a_span_is_all_that_is_asked_for(still: Path) -> None:
     assert "No physics" in slow.verdict
 
 
+def test_a_file_is_compared_with_its_dance(
+    still: Path, plain_report: list[object], capfd: pytest.CaptureFixture[str]
+) -> None:
+    """The same moments of the file, drawn and danced; an arm that moves slowly is all but kept."""
+    assert _run(["compare", str(still), "--span", "0", "1", "--json"]) == 0
+    figures = one_object(capfd.readouterr().out)
+    drawn, danced = figures["variants"]["file"], figures["variants"]["physical"]
+    assert drawn["duration"] == pytest.approx(danced["duration"])
+    assert drawn["controller"] == "kinematic"
+    assert danced["root_force_max"] == 0.0
+    (apart,) = figures["differences"]
+    assert apart["between"] == ["file", "physical"]
+    assert 0.0 < apart["joint_rms_deg"] < 5.0
+    said = refused(capfd, "compare", str(still), "--effort", "sad")
+    assert "--effort is for scores" in said
+    assert "is for motion files" in refused(capfd, "compare", "first-port-de-bras", "--speed", "2")
+
+
+def test_the_report_of_a_compared_file_has_the_differences(still: Path, home: Path) -> None:
+    files = enpointe.write_report(
+        enpointe.compare_file(still, span=(0.0, 1.0)), home / "out", video=False
+    )
+    page = files["report"].read_text()
+    assert "The file and the dance" in page
+    assert "file and physical" in page
+
+
 def test_a_file_of_flight_alone_is_refused(still: Path, capfd: pytest.CaptureFixture[str]) -> None:
     source = lifted(still, 0.0, 3.0)
     assert "in the air" in refused(capfd, "perform", str(source), "--out", "out")
@@ -143,9 +171,10 @@ def test_a_damaged_file_is_refused_as_a_motion(
     assert [p.name for p in home.iterdir()] == ["bad.bvh"]
 
 
-@pytest.mark.slow
-def test_a_fall_is_told_and_danced_without(still: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """She is made to fall once: 2.7 s after the start are 1.7 s of the file."""
+def made_to_fall(
+    monkeypatch: pytest.MonkeyPatch, falls: Callable[[int, Motion], float | None]
+) -> list[Motion]:
+    """Files are taken as captures, and she falls as often as is said; what she tried."""
     from enpointe import captured, danced, performing_file
 
     def as_capture(path: Path, **_: object) -> captured.Captured:
@@ -153,23 +182,52 @@ def test_a_fall_is_told_and_danced_without(still: Path, monkeypatch: pytest.Monk
 
     tried: list[Motion] = []
 
-    def falls_once(motion: Motion, *given: object) -> danced.Physics:
+    def run(motion: Motion, *given: object) -> danced.Physics:
         tried.append(motion)
         physics = danced.run_physics(motion, "pd")
-        measures = replace(physics.measures, fell_at=2.7) if len(tried) == 1 else physics.measures
-        return replace(physics, measures=measures)
+        fell = falls(len(tried), motion)
+        return replace(physics, measures=replace(physics.measures, fell_at=fell))
 
     monkeypatch.setattr(performing_file, "read_captured", as_capture)
-    monkeypatch.setattr(performing_file, "run_physics", falls_once)
+    monkeypatch.setattr(performing_file, "run_physics", run)
+    return tried
+
+
+@pytest.mark.slow
+def test_a_fall_is_told_and_danced_without(still: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """She is made to fall once: 2.7 s after the start are 1.7 s of the file."""
+    tried = made_to_fall(monkeypatch, lambda count, _: 2.7 if count == 1 else None)
     dance = enpointe.perform_file(still, controller="pd")
     assert len(tried) == 2
     assert dance.stood
     assert not dance.completed
     (fall,) = dance.obstacles
-    assert fall.end == pytest.approx(1.7, abs=0.02)
-    assert dance.stretch.start >= fall.end
-    assert dance.others[0].end <= fall.start
+    assert fall.start == pytest.approx(1.2, abs=0.02)
+    assert fall.end == pytest.approx(2.2, abs=0.02)
+    assert dance.stretch.end <= fall.start
+    assert dance.others[0].start >= fall.end
     assert "The rest is not danced: she falls there" in dance.verdict
+
+
+@pytest.mark.slow
+def test_after_the_last_fall_only_what_was_danced_is_danced_again(
+    home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Made to fall half way each time, she tries the longer half; at last, a half she danced."""
+    time = np.arange(0.0, 24.005, 0.02)
+    qpos = np.tile(MODEL.key("standing").qpos, (len(time), 1))
+    qpos[:, MODEL.joint("left_elbow_bend").qposadr[0]] += 0.5 + 0.3 * np.sin(4.0 * time + 0.5)
+    save_motion(Motion.from_qpos(MODEL, time, qpos), home / "long.npz")
+    tried = made_to_fall(
+        monkeypatch, lambda count, motion: 0.45 * motion.duration if count < 5 else None
+    )
+    dance = enpointe.perform_file(home / "long.npz", controller="pd")
+    assert len(tried) == 5
+    assert dance.stood
+    ends = [each.start for each in dance.obstacles]
+    assert any(dance.stretch.end == pytest.approx(end, abs=0.03) for end in ends)
+    assert dance.stretch.length < max(each.length for each in dance.others)
+    assert "she falls there" in dance.verdict
 
 
 @pytest.mark.slow

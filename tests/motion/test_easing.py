@@ -159,6 +159,63 @@ def test_a_foot_that_lands_sliding_and_jumps_as_its_heel_leaves_stays_in_place()
     assert np.ptp(made.points[50:200, heel, :2], axis=0).max() < 1e-9
 
 
+def drawn(ways: dict[str, np.ndarray], bears: np.ndarray) -> ContactSchedule:
+    """Feet that slide along ways (T,), m forward of where they stand at first."""
+    raw = moved(bears)
+    raw.points[:] = raw.points[0]
+    for side, way in ways.items():
+        raw.points[:, np.logical_or(*parts(side)), 0] += way[:, None]
+    return raw
+
+
+def test_a_foot_that_slides_to_where_it_rests_is_on_its_way_while_the_other_stands() -> None:
+    """Captured down a fifth of a second too early, 20 cm from where it will stand."""
+    left = np.logical_or(*parts("left"))
+    bears = np.ones((300, 12), dtype=bool)
+    bears[:80, left] = False
+    way = np.interp(np.arange(300), [80, 100], [0.0, 0.2])
+    made = settled(MODEL, drawn({"left": way}, bears))
+    assert not made.bears[:90, left].any()
+    assert made.bears[100:, left].all()
+    assert made.bears[:, ~left].all()
+    standing = made.points[:, left, 0][made.bears[:, left].all(axis=1)]
+    assert np.ptp(standing, axis=0).max() < 1e-9
+    np.testing.assert_allclose(made.points[-1, left, 0], made.points[0, left, 0], atol=1e-9)
+
+
+def test_a_foot_that_slides_alone_stands_where_it_rests() -> None:
+    """Nobody else bears: it has one place before and one after, and none in between."""
+    left = np.logical_or(*parts("left"))
+    bears = np.ones((300, 12), dtype=bool)
+    bears[:, left] = False
+    way = np.interp(np.arange(300), [140, 160], [0.0, 0.2])
+    made = settled(MODEL, drawn({"right": way}, bears))
+    assert made.bears[:, ~left].all()
+    places = np.unique(made.points[:, ~left, 0].mean(axis=1).round(6))
+    assert np.ptp(places) == pytest.approx(0.2, abs=1e-5)
+    assert len(places) == 2
+
+
+def test_of_two_feet_that_slide_the_nearer_to_its_place_bears() -> None:
+    """Weight goes from one to the other: at no time do both skate, and one stands always."""
+    left = np.logical_or(*parts("left"))
+    bears = np.ones((300, 12), dtype=bool)
+    bears[:100, left] = False
+    bears[140:, ~left] = False
+    rows = np.arange(300)
+    ways = {
+        "left": np.interp(rows, [100, 130], [-0.15, 0.0]),
+        "right": np.interp(rows, [110, 140], [0.0, 0.15]),
+    }
+    made = settled(MODEL, drawn(ways, bears))
+    assert made.bears.any(axis=1).all()
+    assert not made.bears[100:110, left].any()
+    assert not made.bears[131:140, ~left].any()
+    for foot in (left, ~left):
+        standing = made.points[:, foot, 0][made.bears[:, foot].all(axis=1)]
+        assert np.ptp(standing, axis=0).max() < 1e-9
+
+
 def test_a_heel_that_never_lies_flat_is_left_alone() -> None:
     bears = np.ones((300, 12), dtype=bool)
     _, toes = parts("left")
