@@ -73,10 +73,12 @@ def perform(
         return _perform_file(source, chosen, file, dancer, video, output)
     file.refuse(source)
     from enpointe.posing import find_score
+    from enpointe.sim.render import look_for_opengl
 
     console = output.console()
     with console.progress() as progress:
         score = enpointe.load_score(source) if hold is None else find_score(source)
+        look_for_opengl()
         dance = enpointe.perform(
             score,
             effort=effort,

@@ -14,6 +14,8 @@ import os
 import subprocess
 import sys
 import weakref
+from concurrent.futures import Future
+from threading import Thread
 from types import TracebackType
 from typing import TYPE_CHECKING, Literal, Protocol, Self, cast
 
@@ -27,7 +29,15 @@ from enpointe.sim.camera import COM_INK, COM_RADIUS, SUPPORT_INK, Overlays, Proj
 if TYPE_CHECKING:
     import mujoco
 
-__all__ = ["GLPainter", "Painter", "Quality", "floor_height", "gl_backend", "open_painter"]
+__all__ = [
+    "GLPainter",
+    "Painter",
+    "Quality",
+    "floor_height",
+    "gl_backend",
+    "look_for_opengl",
+    "open_painter",
+]
 
 Backend = Literal["egl", "osmesa", "glfw", "cgl", "wgl"]
 Quality = Literal["fast", "fine"]
@@ -116,13 +126,38 @@ def _candidates() -> tuple[Backend, ...]:
 
 
 @functools.cache
+def _search() -> Future[Backend | None]:
+    """The first backend that draws here, looked for in a thread of its own."""
+    asked = os.environ.get("MUJOCO_GL", "").lower().strip()
+    backends = _candidates() if asked in NOT_CHOSEN else (cast(Backend, asked),)
+    answer: Future[Backend | None] = Future()
+
+    def look() -> None:
+        try:
+            answer.set_result(next((backend for backend in backends if _draws(backend)), None))
+        except BaseException as error:
+            answer.set_exception(error)
+
+    Thread(target=look, daemon=True).start()
+    return answer
+
+
+def look_for_opengl() -> None:
+    """Begin to look what draws here, so that who paints later waits for less.
+
+    It takes half a second, of another processor if there is one; see `gl_backend`.
+    """
+    if os.environ.get("MUJOCO_GL", "").lower().strip() not in SWITCHED_OFF:
+        _search()
+
+
+@functools.cache
 def _find_backend() -> tuple[Backend | None, str | None]:
     """The backend that draws here, or None and the line to tell the user."""
     asked = os.environ.get("MUJOCO_GL", "").lower().strip()
     if asked in SWITCHED_OFF:
         return None, f"OpenGL is switched off (MUJOCO_GL={asked}); using the sketch renderer"
-    backends = _candidates() if asked in NOT_CHOSEN else (cast(Backend, asked),)
-    found = next((backend for backend in backends if _draws(backend)), None)
+    found = _search().result()
     os.environ["MUJOCO_GL"] = found or "off"
     if found is not None:
         _rebind(found)

@@ -16,7 +16,7 @@ from PIL import Image
 from enpointe.errors import RenderError
 from enpointe.sim import render
 from enpointe.sim.camera import VIEWS, Overlays, Projection, View
-from enpointe.sim.render import GLPainter, Painter, gl_backend, open_painter
+from enpointe.sim.render import GLPainter, Painter, gl_backend, look_for_opengl, open_painter
 from enpointe.sim.sketch import SketchPainter
 
 WIDTH, HEIGHT = 200, 160
@@ -78,10 +78,15 @@ def centre(mask: np.ndarray) -> np.ndarray:
 def fresh_probe(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     gl_backend()
     monkeypatch.setenv("MUJOCO_GL", "")
-    render._find_backend.cache_clear()
+    forget()
     yield
     monkeypatch.undo()
+    forget()
+
+
+def forget() -> None:
     render._find_backend.cache_clear()
+    render._search.cache_clear()
 
 
 @pytest.mark.parametrize("maker", PAINTERS)
@@ -233,9 +238,21 @@ def test_the_users_choice_is_the_only_one_tried(monkeypatch: pytest.MonkeyPatch)
 
 
 @pytest.mark.usefixtures("fresh_probe")
+def test_what_was_looked_for_ahead_is_not_looked_for_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    tried: list[str] = []
+    monkeypatch.setattr(render, "_draws", lambda backend: bool(tried.append(backend)))
+    monkeypatch.setenv("MUJOCO_GL", "egl")
+    look_for_opengl()
+    look_for_opengl()
+    assert gl_backend() is None
+    assert tried == ["egl"]
+
+
+@pytest.mark.usefixtures("fresh_probe")
 def test_opengl_switched_off_is_not_probed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("MUJOCO_GL", "off")
     monkeypatch.setattr(render, "_draws", lambda backend: pytest.fail("probed"))
+    look_for_opengl()
     painter, warning = open_painter(stage(), 32, 32)
     assert isinstance(painter, SketchPainter)
     assert warning is not None
