@@ -149,6 +149,7 @@ def test_standing_still_asks_for_weight_and_nothing_else() -> None:
         "orientation",
         "posture",
         "swing foot",
+        "landing",
     }
     errors = problem.errors(unknowns)
     assert all(len(errors[name]) == len(rows.target) for name, rows in problem.rows.items())
