@@ -10,7 +10,7 @@ from scipy.ndimage import find_objects, label
 from enpointe.models.anatomy import SIDES
 from enpointe.motion.contact_schedule import ContactSchedule, without_chatter
 
-__all__ = ["SHORTEST_FLIGHT", "led", "settled", "stances"]
+__all__ = ["SHORTEST_FLIGHT", "led", "stances"]
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -22,16 +22,6 @@ MOST_SLIDE = 0.03
 it rests is on its way."""
 _RESTING, _RESTS = 0.1, 0.08
 """m/s and s: slower than the first for as long as the second, a foot rests."""
-
-
-def settled(model: mujoco.MjModel, contacts: ContactSchedule) -> ContactSchedule:
-    """Stances, and between them a way from each to the next without jumps.
-
-    Args:
-        model: Whose soles they are.
-        contacts: Evenly sampled.
-    """
-    return led(stances(model, contacts))
 
 
 def stances(model: mujoco.MjModel, contacts: ContactSchedule) -> ContactSchedule:

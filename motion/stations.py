@@ -25,13 +25,12 @@ from enpointe.models.keypose import KeyPose, KeyPoseSolver
 from enpointe.models.leg_target import LegTarget, Standing
 from enpointe.models.target import PoseTarget
 from enpointe.motion.arm_path import ArmPath
+from enpointe.motion.gravity import GRAVITY
 from enpointe.notation import Jump, ResolvedFrame, Score, Side
 
-__all__ = ["GRAVITY", "Law", "Parabola", "Station", "build_stations"]
+__all__ = ["Law", "Parabola", "Station", "build_stations"]
 
 Array = NDArray[np.float64]
-GRAVITY = 9.81
-"""m/s^2, downwards, as MuJoCo has it."""
 PUSH_RISE_DEG = 60.0
 """How far the foot is raised when it leaves the floor: all but fully stretched."""
 TOUCH_RISE_DEG, TOUCH_KNEE_DEG = 45.0, 18.0

@@ -69,7 +69,7 @@ def obstacles(motion: Motion, contacts: ContactSchedule) -> tuple[Obstacle, ...]
 
     Args:
         motion: What moves.
-        contacts: Which soles stand, of the same samples, with chatter gone (`settled`).
+        contacts: Which soles stand, of the same samples, with chatter gone (`stances`).
     """
     aloft = np.asarray(~contacts.bears.any(axis=1))
     found = [Obstacle(start, end, IN_THE_AIR) for start, end in _spans(aloft, motion.time)]

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from enpointe.controllers import Command, State
 from enpointe.errors import BodyError
 from enpointe.motion import Motion
-from enpointe.motion.stations import GRAVITY
+from enpointe.motion.gravity import GRAVITY
 from enpointe.sim.contacts import ContactReader
 
 __all__ = [

@@ -125,10 +125,15 @@ def _candidates() -> tuple[Backend, ...]:
     return ("egl", "osmesa", "glfw") if os.environ.get("DISPLAY") else ("egl", "osmesa")
 
 
+def _asked() -> str:
+    """The backend that the user asks for; whatever draws if empty."""
+    return os.environ.get("MUJOCO_GL", "").lower().strip()
+
+
 @functools.cache
 def _search() -> Future[Backend | None]:
     """The first backend that draws here, looked for in a thread of its own."""
-    asked = os.environ.get("MUJOCO_GL", "").lower().strip()
+    asked = _asked()
     backends = _candidates() if asked in NOT_CHOSEN else (cast(Backend, asked),)
     answer: Future[Backend | None] = Future()
 
@@ -147,14 +152,14 @@ def look_for_opengl() -> None:
 
     It takes half a second, of another processor if there is one; see `gl_backend`.
     """
-    if os.environ.get("MUJOCO_GL", "").lower().strip() not in SWITCHED_OFF:
+    if _asked() not in SWITCHED_OFF:
         _search()
 
 
 @functools.cache
 def _find_backend() -> tuple[Backend | None, str | None]:
     """The backend that draws here, or None and the line to tell the user."""
-    asked = os.environ.get("MUJOCO_GL", "").lower().strip()
+    asked = _asked()
     if asked in SWITCHED_OFF:
         return None, f"OpenGL is switched off (MUJOCO_GL={asked}); using the sketch renderer"
     found = _search().result()

@@ -146,7 +146,7 @@ class Landing:
 
     A push lifts heels, and forces can't be planned under them: what stands then is a line of toes.
     Without this task the trunk bends and bends to keep her over that line, and a push sideways on
-    two feet was survived up to .80 of the bound of the extrapolated centre of mass; with it, 1.13.
+    two feet was survived up to .80 of the bound of the extrapolated centre of mass; with it, 1.12.
 
     Attributes:
         weight: Per (m/s^2)^2.

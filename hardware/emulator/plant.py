@@ -92,6 +92,10 @@ class Loads:
     def velocity(self) -> Sequence[float]:
         return self._velocity
 
+    def turn_by_hand(self, joint: int, angle: float) -> None:
+        """Put a joint, which nothing holds, at an angle, rad."""
+        self._position[joint], self._velocity[joint] = angle, 0.0
+
     def jam(self, joint: int, jammed: bool) -> None:
         self._jammed[joint] = jammed
         if jammed:

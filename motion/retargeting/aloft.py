@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 
 from enpointe.models.anatomy import SIDES
 from enpointe.models.anthropometry import Anthropometry
+from enpointe.motion.gravity import GRAVITY
 from enpointe.motion.retargeting.holding import runs
 
 __all__ = ["flying", "thrown", "weight_centre"]
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-_GRAVITY = 9.81
 _FALLS = 0.7
 """Share of gravity with which whoever flies falls at least: what is captured of the weight is good
 to a third or so over a short flight."""
@@ -110,7 +110,7 @@ def thrown(time: Array, com: Array, aloft: Mask, scale: float) -> dict[int, Arra
         curved = np.column_stack([level, t * (t - 1.0)])
         way = level @ np.linalg.lstsq(level, com[run, :2], rcond=None)[0]
         start, slope, bend = np.linalg.lstsq(curved, com[run, 2], rcond=None)[0]
-        free = -0.5 * _GRAVITY * whole**2
+        free = -0.5 * GRAVITY * whole**2
         own = bend / scale
         height = curved @ [start, slope, free if abs(own / free - 1.0) < _TOLD else own]
         for i, place, z in zip(range(run.start, run.stop), way, height, strict=True):
@@ -126,7 +126,7 @@ def _longest_fall(time: Array, height: Array, least: int) -> slice | None:
             span = slice(start, start + count)
             t, z = time[span] - time[start], height[span]
             fall = float(-2.0 * np.polyfit(t, z, 2)[0])
-            if fall > _FALLS * _GRAVITY and float(z.max() - z[0]) > _RISE:
+            if fall > _FALLS * GRAVITY and float(z.max() - z[0]) > _RISE:
                 falls[start] = fall
         if falls:
             best = max(falls, key=lambda start: falls[start])

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation, Slerp
 
 from enpointe.models.anatomy import SIDES
+from enpointe.motion.retargeting.directions import unit
 from enpointe.motion.retargeting.source import Source
 
 __all__ = ["mended"]
@@ -87,7 +88,7 @@ def _jumps(points: Mapping[str, Array], chain: list[str], rate: float) -> NDArra
     """Samples from which to the next one a bone of the limb turns as none can."""
     jumps = np.zeros(len(points[chain[0]]) - 1, dtype=bool)
     for one, other in pairwise(chain[:3]):
-        turned = _angle(_unit(points[other] - points[one]))
+        turned = _angle(unit(points[other] - points[one]))
         jumps |= (turned > _LEAST) & (turned * rate > _IMPOSSIBLE)
     return np.flatnonzero(jumps)
 
@@ -95,11 +96,11 @@ def _jumps(points: Mapping[str, Array], chain: list[str], rate: float) -> NDArra
 def _frames(points: Mapping[str, Array], chain: list[str], foot: Array | None) -> Rotation:
     """A limb as a whole: x from its root to its end, y along the hinge in between."""
     root, middle, end = (points[name] for name in chain[:3])
-    along = _unit(end - root)
-    hinge = np.cross(_unit(middle - root), _unit(end - middle))
+    along = unit(end - root)
+    hinge = np.cross(unit(middle - root), unit(end - middle))
     if foot is not None:
         hinge = hinge + _HINGE * foot[:, :, 1]
-    across = _unit(hinge - np.sum(hinge * along, axis=1, keepdims=True) * along)
+    across = unit(hinge - np.sum(hinge * along, axis=1, keepdims=True) * along)
     turns = np.stack([along, across, np.cross(along, across)], axis=2)
     return Rotation.from_matrix(turns)
 
@@ -200,7 +201,3 @@ def _angle(directions: Array) -> Array:
     """By how much directions (T, 3) turn from each sample to the next, (T - 1,), rad."""
     chord = np.linalg.norm(np.diff(directions, axis=0), axis=1)
     return np.asarray(2.0 * np.arcsin(np.clip(0.5 * chord, 0.0, 1.0)))
-
-
-def _unit(vectors: Array) -> Array:
-    return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-9))

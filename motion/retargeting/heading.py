@@ -8,6 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from enpointe.models.anatomy import side_sign
 from enpointe.motion.averaging import averaged
+from enpointe.motion.retargeting.directions import unit
 from enpointe.motion.retargeting.source import Source
 
 __all__ = ["headings"]
@@ -48,14 +49,10 @@ def _of_leg(source: Source, side: str) -> Array:
     """Where a leg lets its foot point, (T, 2), unit: out from where its knee bends to, or, with a
     straight knee, from where the pelvis faces."""
     hip, knee, ankle = (source.points[f"{side}_{joint}"] for joint in ("hip", "knee", "ankle"))
-    thigh, shank = _unit(knee - hip), _unit(ankle - knee)
+    thigh, shank = unit(knee - hip), unit(ankle - knee)
     hinge = np.cross(thigh, shank)
     bends = np.stack([hinge[:, 1], -hinge[:, 0]], axis=1)
     straight = 1.0 - np.minimum(np.linalg.norm(hinge, axis=1, keepdims=True), 1.0)
     faces = source.frames["pelvis"][:, :2, 0]
     out = Rotation.from_euler("z", side_sign(side) * _OUT).as_matrix()[:2, :2]
-    return _unit((bends + straight * faces) @ out.T)
-
-
-def _unit(vectors: Array) -> Array:
-    return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-9))
+    return unit((bends + straight * faces) @ out.T)

@@ -13,6 +13,7 @@ from enpointe.models.anatomy import SIDES
 from enpointe.motion.averaging import averaged
 from enpointe.motion.clearance import LIFTING, lifted
 from enpointe.motion.retargeting.body import BALL, HEEL, NONE, TIP, Body, Foot
+from enpointe.motion.retargeting.directions import unit
 from enpointe.motion.retargeting.floor import Steps
 from enpointe.motion.retargeting.holding import hysteresis, ramped, runs, shifted
 from enpointe.motion.retargeting.landmarks import SEGMENTS
@@ -98,7 +99,7 @@ def make_plan(source: Source, body: Body, steps: Mapping[str, Steps], scale: flo
         scale: Size of the body over that of the source.
     """
     directions = {
-        name: _unit(source.points[end] - source.points[start])
+        name: unit(source.points[end] - source.points[start])
         for name, (start, end) in SEGMENTS.items()
         if start in source.points and end in source.points
     }
@@ -201,7 +202,3 @@ def _lift(height: Array, kind: NDArray[np.int8], rate: float) -> Array:
     free = 1.0 - ramped(kind != NONE, LIFTING, rate)
     smooth = lifted(np.maximum(_BRUSH * free - height, 0.0), rate)
     return np.outer(smooth * (kind == NONE), [0.0, 0.0, 1.0]) * np.minimum(free * 4.0, 1.0)[:, None]
-
-
-def _unit(vectors: Array) -> Array:
-    return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-9))

@@ -14,6 +14,7 @@ from enpointe.models.anatomy import SIDES
 from enpointe.motion.formats.content import Payload
 from enpointe.motion.formats.markers import MarkerMotion
 from enpointe.motion.formats.skeleton import SkeletonMotion
+from enpointe.motion.retargeting.directions import unit
 from enpointe.motion.retargeting.joint_map import END, JointMap
 from enpointe.motion.retargeting.marker_body import marker_body
 
@@ -199,7 +200,7 @@ def _guessed_axes(part: str, turn: Array, points: Mapping[str, Array], rate: flo
         top = next((points[name] for name in ("neck", "chest", "head") if name in points), None)
         if top is None:
             top = 0.5 * (points["left_shoulder"] + points["right_shoulder"])
-        up = local(_unit(top - hips))
+        up = local(unit(top - hips))
         pair = "hip" if part == "pelvis" or "left_shoulder" not in points else "shoulder"
         left = local(points[f"left_{pair}"] - points[f"right_{pair}"])
     up = up / np.linalg.norm(up)
@@ -214,7 +215,3 @@ def flat_samples(ankle: Array, rate: float) -> NDArray[np.bool_]:
     low = ankle[:, 2] <= np.percentile(ankle[:, 2], _LOW)
     still = low & (speed < _STILL)
     return still if still.any() else low
-
-
-def _unit(vectors: Array) -> Array:
-    return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))

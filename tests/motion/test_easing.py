@@ -12,7 +12,7 @@ from enpointe.models import dancer_model
 from enpointe.motion import Event, Motion
 from enpointe.motion.contact_schedule import ContactSchedule, contact_schedule
 from enpointe.motion.easing import cut, ease, still_at
-from enpointe.motion.settling import settled
+from enpointe.motion.settling import led, stances
 from enpointe.motion.stretches import IN_THE_AIR, Obstacle, obstacles, stretches
 
 MODEL = dancer_model(flesh=False)
@@ -104,7 +104,7 @@ def test_soles_go_from_stance_to_stance_without_jumps() -> None:
     bears = np.ones((300, 12), dtype=bool)
     left = np.logical_or(*parts("left"))
     bears[100:200, left] = False
-    made = settled(MODEL, moved(bears))
+    made = led(stances(MODEL, moved(bears)))
     np.testing.assert_array_equal(made.bears, bears)
     assert np.all(made.points[:, left, 2] == 0.0)
     swing = made.points[99:201, left, :2]
@@ -118,7 +118,7 @@ def test_a_short_time_in_the_air_is_a_step_and_a_long_one_a_flight() -> None:
     raw = moved(bears)
     raw.points[:] = raw.points[0]
     raw.points[100:108, :, 0] += 0.3
-    made = settled(MODEL, raw)
+    made = led(stances(MODEL, raw))
     assert made.bears[100:108].all()
     assert np.ptp(made.points[:200, :, 0], axis=0).max() < 1e-9
     assert not made.bears[200:230].any()
@@ -138,7 +138,7 @@ def test_a_foot_that_comes_down_on_its_heel_is_flat_in_place() -> None:
     heel, toes = parts("left")
     bears[100:200, heel | toes] = False
     bears[180:200, heel] = True
-    made = settled(MODEL, moved(bears))
+    made = led(stances(MODEL, moved(bears)))
     assert made.bears[180:, heel | toes].all()
     assert not made.bears[100:180, heel | toes].any()
     for row in range(180, 200):
@@ -154,7 +154,7 @@ def test_a_foot_that_lands_sliding_and_jumps_as_its_heel_leaves_stays_in_place()
     raw.points[:] = raw.points[0]
     raw.points[50:70, heel | toes, 0] += np.linspace(0.02, 0.0, 20)[:, None]
     raw.points[200:, toes, 1] += 0.01
-    made = settled(MODEL, raw)
+    made = led(stances(MODEL, raw))
     assert np.ptp(made.points[50:, toes, :2], axis=0).max() < 1e-9
     assert np.ptp(made.points[50:200, heel, :2], axis=0).max() < 1e-9
 
@@ -174,7 +174,7 @@ def test_a_foot_that_slides_to_where_it_rests_is_on_its_way_while_the_other_stan
     bears = np.ones((300, 12), dtype=bool)
     bears[:80, left] = False
     way = np.interp(np.arange(300), [80, 100], [0.0, 0.2])
-    made = settled(MODEL, drawn({"left": way}, bears))
+    made = led(stances(MODEL, drawn({"left": way}, bears)))
     assert not made.bears[:90, left].any()
     assert made.bears[100:, left].all()
     assert made.bears[:, ~left].all()
@@ -189,7 +189,7 @@ def test_a_foot_that_slides_alone_stands_where_it_rests() -> None:
     bears = np.ones((300, 12), dtype=bool)
     bears[:, left] = False
     way = np.interp(np.arange(300), [140, 160], [0.0, 0.2])
-    made = settled(MODEL, drawn({"right": way}, bears))
+    made = led(stances(MODEL, drawn({"right": way}, bears)))
     assert made.bears[:, ~left].all()
     places = np.unique(made.points[:, ~left, 0].mean(axis=1).round(6))
     assert np.ptp(places) == pytest.approx(0.2, abs=1e-5)
@@ -207,7 +207,7 @@ def test_of_two_feet_that_slide_the_nearer_to_its_place_bears() -> None:
         "left": np.interp(rows, [100, 130], [-0.15, 0.0]),
         "right": np.interp(rows, [110, 140], [0.0, 0.15]),
     }
-    made = settled(MODEL, drawn(ways, bears))
+    made = led(stances(MODEL, drawn(ways, bears)))
     assert made.bears.any(axis=1).all()
     assert not made.bears[100:110, left].any()
     assert not made.bears[131:140, ~left].any()
@@ -220,7 +220,7 @@ def test_a_heel_that_never_lies_flat_is_left_alone() -> None:
     bears = np.ones((300, 12), dtype=bool)
     _, toes = parts("left")
     bears[:, toes] = False
-    assert not settled(MODEL, moved(bears)).bears[:, toes].any()
+    assert not led(stances(MODEL, moved(bears))).bears[:, toes].any()
 
 
 def test_a_stretch_begins_and_ends_on_a_whole_foot() -> None:

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from enpointe.errors import RigError
 from enpointe.hardware.calibration import Calibration
 from enpointe.hardware.dynamixel import check_rig
-from enpointe.hardware.emulator import Bus
+from enpointe.hardware.emulator import Bus, Loads
 from enpointe.hardware.rig_file import Rig, load_rig
 
 from .benches import Bench, bench, small_rig
@@ -42,7 +43,9 @@ class Person:
         self._clumsy(line)
 
     def put(self, place: int, angle: float) -> None:
-        self._bus.plant._position[place] = angle  # type: ignore[attr-defined]
+        plant = self._bus.plant
+        assert isinstance(plant, Loads)
+        plant.turn_by_hand(place, angle)
         self._bus.servos[place].horn.move(angle, 0.0)
 
 
@@ -91,7 +94,9 @@ def test_set_up_writes_what_is_wrong_and_nothing_twice() -> None:
     assert check_rig(made.rig, made.link) == []
 
 
-def test_a_joint_that_is_not_moved_or_not_held_still_is_told() -> None:
+def test_a_joint_that_is_not_moved_or_not_held_still_is_told(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     true = small_rig()
     made = bench(true)
     lazy = Calibration(true, made.link, lambda line: None, lambda line: None)
@@ -104,11 +109,11 @@ def test_a_joint_that_is_not_moved_or_not_held_still_is_told() -> None:
     restless = Calibration(true, made.link, lambda line: None, lambda line: None)
     restless.prepare()
 
-    def shaken(servo: int, register: object, **rest: int) -> int | None:
+    def shaken(*asked: Any, **rest: Any) -> int | None:
         made.bus.servos[0].horn.move(made.clock.now() * 400.0 % 1.0, 0.0)
-        return reads(servo, register, **rest)  # type: ignore[arg-type]
+        return reads(*asked, **rest)
 
-    made.link.read = shaken  # type: ignore[method-assign]
+    monkeypatch.setattr(made.link, "read", shaken)
     with pytest.raises(RigError, match="hold it still"):
         restless.measure()
 

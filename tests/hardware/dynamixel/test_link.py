@@ -21,7 +21,7 @@ TABLE = control_table(1020)
 GOAL = TABLE["Goal Position"]
 
 
-def heard(made: Bench) -> list[bytes]:
+def heard(made: Bench, monkeypatch: pytest.MonkeyPatch) -> list[bytes]:
     """Everything that is written to the port from now on."""
     sent: list[bytes] = []
     write = made.port.writePort
@@ -30,7 +30,7 @@ def heard(made: Bench) -> list[bytes]:
         sent.append(bytes(packet))
         return int(write(packet))
 
-    made.port.writePort = listening  # type: ignore[method-assign]
+    monkeypatch.setattr(made.port, "writePort", listening)
     return sent
 
 
@@ -47,9 +47,9 @@ EXAMPLES = {
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
-def test_what_is_sent_is_the_manuals_example(name: str) -> None:
+def test_what_is_sent_is_the_manuals_example(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     made = bench(small_rig(7))
-    sent = heard(made)
+    sent = heard(made, monkeypatch)
     link = made.link
     {
         "ping": lambda: link.ping(1),
@@ -63,9 +63,11 @@ def test_what_is_sent_is_the_manuals_example(name: str) -> None:
     assert sent[0].hex(" ").upper() == EXAMPLES[name]
 
 
-def test_all_that_a_dance_sends_is_sound_and_of_few_kinds() -> None:
+def test_all_that_a_dance_sends_is_sound_and_of_few_kinds(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     made = bench()
-    sent = heard(made)
+    sent = heard(made, monkeypatch)
     with made.servo() as body:
         body.start(np.zeros(3))
         swing(body, 0.5)
@@ -99,14 +101,16 @@ def test_answers_come_with_their_sign_and_errors() -> None:
     assert made.link.write(99, GOAL, 1) is None
 
 
-def test_a_lost_answer_is_asked_for_again_so_often_and_no_more() -> None:
+def test_a_lost_answer_is_asked_for_again_so_often_and_no_more(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     made = bench(faults=[Fault(FaultKind.DROP, probability=0.5)], seed=3)
     found = [made.link.read(1, GOAL) for _ in range(60)]
     missed = found.count(None)
     assert 0 < missed < 25
     assert made.link.counts.retried > 0
     dead = bench(faults=[Fault(FaultKind.DROP)])
-    sent = heard(dead)
+    sent = heard(dead, monkeypatch)
     assert dead.link.read(1, GOAL) is None
     assert len(sent) == 3
 
