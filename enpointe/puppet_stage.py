@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from enpointe.preparing import Progress, silent
 
 if TYPE_CHECKING:
+    import mujoco
+
     from enpointe.controllers import Command, Recording
     from enpointe.hardware.dynamixel import ServoRig, Statistics
     from enpointe.hardware.emulator import FaultRun
@@ -75,6 +77,7 @@ def dance_on_stage(
     *,
     contacts: ContactSchedule | None = None,
     faults: FaultRun | None = None,
+    play: float = 0.0,
     progress: Progress = silent,
 ) -> StagedDance:
     """Let a body of servos dance by itself: nothing but gravity, a floor and its motors.
@@ -89,6 +92,7 @@ def dance_on_stage(
         rig: Its servos.
         contacts: Which soles bear, and when; read from the motion if None.
         faults: What goes wrong on the bus.
+        play: rad of play in every servo's gears.
         progress: Told how far it is.
 
     Raises:
@@ -100,6 +104,7 @@ def dance_on_stage(
     from enpointe.hardware.stiffness import damping, stiffness
     from enpointe.motion.contact_schedule import contact_schedule
     from enpointe.servo_loop import layout_of
+    from enpointe.sim.gear_play import with_play
     from enpointe.sim.servo_plant import ServoPlant
 
     motion, contacts = _after_standing(motion, contacts or contact_schedule(motion))
@@ -109,7 +114,8 @@ def dance_on_stage(
     damped[layout.actuator] = [damping(servo) for servo in rig.servos]
     springs = Springs(motion, stiff, damping=damped, contacts=contacts, lead=rig.period)
     servos = [(servo.joint, servo.sign, radians(servo.offset)) for servo in rig.servos]
-    stage = ServoPlant.of(motion.model, motion.qpos[0], servos, period=rig.period)
+    model = with_play(_spec_of(rig), _in_all(rig, play)) if play else motion.model
+    stage = ServoPlant.of(model, motion.qpos[0], servos, period=rig.period)
     clock = VirtualClock()
     port = EmulatedPort(bus_of(description_of(rig), plant=stage, faults=faults), clock)
     port.setBaudRate(rig.baud)
@@ -140,7 +146,12 @@ class _OnStage:
 
 
 def dance_on_stand(
-    motion: Motion, rig: Rig, *, faults: FaultRun | None = None, progress: Progress = silent
+    motion: Motion,
+    rig: Rig,
+    *,
+    faults: FaultRun | None = None,
+    play: float = 0.0,
+    progress: Progress = silent,
 ) -> Danced:
     """Let a body of servos dance while it hangs by its trunk, as a puppet is first tried.
 
@@ -148,6 +159,7 @@ def dance_on_stand(
         motion: Of the rig's body.
         rig: Its servos.
         faults: What goes wrong on the bus.
+        play: rad of play in every servo's gears.
         progress: Told how far it is.
 
     Raises:
@@ -155,15 +167,20 @@ def dance_on_stand(
     """
     from enpointe.hardware.dynamixel import Link, description_of
     from enpointe.hardware.emulator import EmulatedPort, VirtualClock, bus_of
-    from enpointe.models.puppet import op3_spec, puppet_spec
     from enpointe.servo_loop import dance_on
     from enpointe.sim.stand_plant import StandPlant
 
-    spec = {"op3": op3_spec, "puppet": puppet_spec}[rig.body]()
     angles = motion.qpos[0, [motion.model.joint(name).qposadr[0] for name in rig.joints]]
     signs = [servo.sign for servo in rig.servos]
     offsets = [radians(servo.offset) for servo in rig.servos]
-    stand = StandPlant(spec, angles, rig.joints, signs=signs, offsets=offsets)
+    stand = StandPlant(
+        _spec_of(rig),
+        angles,
+        rig.joints,
+        signs=signs,
+        offsets=offsets,
+        play=_in_all(rig, play),
+    )
     clock = VirtualClock()
     port = EmulatedPort(bus_of(description_of(rig), plant=stand, faults=faults), clock)
     port.setBaudRate(rig.baud)
@@ -174,6 +191,16 @@ def dance_on_stand(
         clock,
         progress=lambda done, total: progress("servos", done, total),
     )
+
+
+def _spec_of(rig: Rig) -> mujoco.MjSpec:
+    from enpointe.models.puppet import op3_spec, puppet_spec
+
+    return {"op3": op3_spec, "puppet": puppet_spec}[rig.body]()
+
+
+def _in_all(rig: Rig, play: float) -> dict[str, float]:
+    return dict.fromkeys(rig.joints, play)
 
 
 def _after_standing(motion: Motion, contacts: ContactSchedule) -> tuple[Motion, ContactSchedule]:

@@ -58,6 +58,10 @@ def servo(
     faults: Annotated[
         Path | None, typer.Option(help="What goes wrong on an emulated bus, in TOML.")
     ] = None,
+    backlash: Annotated[
+        float,
+        typer.Option(help="Degrees of play in the gears of a simulated rig; XM and XH have 0.25."),
+    ] = 0.0,
     output: OutputOptions,
 ) -> int:
     """Dance on a rig of Dynamixel servos. Ctrl-C parks it; a second one lets go at once."""
@@ -82,6 +86,7 @@ def servo(
             as_written=as_written,
             faults=script,
             seed=output.seed,
+            backlash=backlash,
             progress=progress,
         )
     folder = output.folder(f"{Path(source).stem}-{chosen.name}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -48,6 +49,8 @@ _NOBODY = "servos alone, no body behind them (emulated)"
 _STAND = "hung on a stand, with gravity, no floor (simulated)"
 _FEET = "on its own feet, with gravity and a floor, nothing held (simulated)"
 _REAL = "real servos"
+_MOST_PLAY = 5.0
+"""Degrees: gears with more are broken."""
 _PATIENCE = 8.0
 """ms of a pseudo-terminal: how long the emulator's process may be away."""
 
@@ -171,6 +174,7 @@ def servo(
     as_written: bool = False,
     faults: Sequence[Fault] = (),
     seed: int = 0,
+    backlash: float = 0.0,
     progress: Progress = silent,
 ) -> ServoPerformance:
     """Dance on a rig of servos, or on one that is emulated.
@@ -187,6 +191,8 @@ def servo(
         as_written: Dance it even if the servos can't follow, and no slower than it is written.
         faults: What goes wrong on an emulated bus.
         seed: Of the faults.
+        backlash: Degrees of play in every servo's gears, of a simulated body; ROBOTIS states 0.25
+            for XM and XH servos, and none for the smaller ones.
         progress: Told how far it is.
 
     Returns:
@@ -201,6 +207,11 @@ def servo(
     chosen = rig if isinstance(rig, Rig) else load_rig(rig)
     if faults and port not in (EMULATED, MEMORY, SIMULATED):
         raise RigError(f"faults happen on an emulated bus; {port} has its own")
+    if backlash and port != SIMULATED:
+        raise RigError(f"gears have play where a body hangs on them: use --port {SIMULATED}")
+    if not 0.0 <= backlash < _MOST_PLAY:
+        raise RigError(f"a backlash is 0 to {_MOST_PLAY:g} degrees, not {backlash:g}")
+    play = math.radians(backlash)
     made = rig_motion(source, chosen, effort=effort, tempo=tempo, progress=progress)
     found = None
     if not as_written:
@@ -209,15 +220,25 @@ def servo(
         )
         made = made.slowed(found)
     if port == SIMULATED and not stand:
-        return _on_its_feet(chosen, made, found, _run(faults, seed), progress)
-    danced = _danced(chosen, made.motion, port, faults, seed, progress)
-    stage = {EMULATED: _NOBODY, MEMORY: _NOBODY, SIMULATED: _STAND}.get(port, _REAL)
+        return _on_its_feet(chosen, made, found, _run(faults, seed), play, progress)
+    danced = _danced(chosen, made.motion, port, faults, seed, play, progress)
+    stage = {EMULATED: _NOBODY, MEMORY: _NOBODY, SIMULATED: _STAND + _said(play)}.get(port, _REAL)
     done = danced.recording, danced.statistics
     return ServoPerformance(chosen, port, made.motion, *done, found, None, stage, made.opened)
 
 
+def _said(play: float) -> str:
+    return f", {math.degrees(play):g} degrees of play in the gears" if play else ""
+
+
 def _danced(
-    rig: Rig, motion: Motion, port: str, faults: Sequence[Fault], seed: int, progress: Progress
+    rig: Rig,
+    motion: Motion,
+    port: str,
+    faults: Sequence[Fault],
+    seed: int,
+    play: float,
+    progress: Progress,
 ) -> Danced:
     from enpointe.servo_loop import dance_in_own_process
 
@@ -227,7 +248,7 @@ def _danced(
     if port == SIMULATED:
         from enpointe.puppet_stage import dance_on_stand
 
-        return dance_on_stand(motion, rig, faults=_run(faults, seed), progress=progress)
+        return dance_on_stand(motion, rig, faults=_run(faults, seed), play=play, progress=progress)
     if port == MEMORY:
         return _in_memory(rig, motion, _run(faults, seed), danced)
     if port == EMULATED:
@@ -244,15 +265,17 @@ def _on_its_feet(
     made: RigMotion,
     found: Feasibility | None,
     faults: FaultRun | None,
+    play: float,
     progress: Progress,
 ) -> ServoPerformance:
     from enpointe.puppet_stage import dance_on_stage
 
     staged = dance_on_stage(
-        made.motion, rig, contacts=made.contacts, faults=faults, progress=progress
+        made.motion, rig, contacts=made.contacts, faults=faults, play=play, progress=progress
     )
     done = staged.recording, staged.statistics
-    return ServoPerformance(rig, SIMULATED, staged.motion, *done, found, staged, _FEET, made.opened)
+    stage = _FEET + _said(play)
+    return ServoPerformance(rig, SIMULATED, staged.motion, *done, found, staged, stage, made.opened)
 
 
 def would(

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from enpointe.errors import BodyError
 from enpointe.sim.body import FALLEN, has_diverged, help_on_root, refuse_help
 from enpointe.sim.contacts import ContactReader
+from enpointe.sim.gear_play import rotor_of
 from enpointe.sim.horns import Horns
 
 __all__ = ["ServoPlant"]
@@ -25,15 +26,16 @@ __all__ = ["ServoPlant"]
 Array = NDArray[np.float64]
 
 
-class ServoPlant:
+class ServoPlant(Horns):
     """A MuJoCo body that servos turn.
 
     Until it is let go it is held as it stands, by hands that bear all of it, as a puppet is while
     its servos are switched on.
 
     Args:
-        model: A body on a free root with a torque source at every hinge; copied, never changed.
-        qpos: (nq,), where it is at first.
+        model: A body on a free root with a torque source at every hinge, and play in its gears if
+            `with_play` gave it some; copied, never changed.
+        qpos: (nq,), where it is at first, without the rotors.
         joints: The joint of each servo, in the order of the bus.
         signs: 1, or -1 where a servo turns the other way than its joint; all 1 without.
         offsets: rad that a servo has where its joint is at zero; all 0 without.
@@ -59,26 +61,28 @@ class ServoPlant:
         period: float = 0.01,
     ) -> None:
         refuse_help(model)
-        if np.shape(qpos) != (model.nq,) or not np.isfinite(qpos).all():
-            raise BodyError(f"qpos must be {model.nq} numbers, got shape {np.shape(qpos)}")
-        self.model = copy.copy(model)
+        own = copy.copy(model)
         # A servo that is driven backwards brakes with more than its stall torque.
-        self.model.actuator_forcelimited[:] = 0
-        self.model.actuator_ctrllimited[:] = 0
-        actuators = {model.joint(int(j)).name: i for i, j in enumerate(model.actuator_trnid[:, 0])}
-        missing = [joint for joint in joints if joint not in actuators]
-        if missing or len(joints) != model.nu:
+        own.actuator_forcelimited[:] = 0
+        own.actuator_ctrllimited[:] = 0
+        driven = model.actuator_trnid[:, 0].tolist()
+        names = [model.joint(j).name for j in range(model.njnt)]
+        missing = [joint for joint in joints if joint not in names]
+        if missing or sorted(rotor_of(model, joint) for joint in joints) != sorted(driven):
             raise BodyError(
                 f"{len(joints)} servos can't turn the {model.nu} joints of this body"
                 + (f"; it has no {', '.join(missing)}" if missing else "")
             )
-        self.data = mujoco.MjData(self.model)
-        self.data.qpos[:] = qpos
-        mujoco.mj_forward(self.model, self.data)
+        super().__init__(own, joints, signs, offsets)
+        geared = int(np.count_nonzero(self._rotors != self._dofs))
+        self._nq, self._nv = model.nq - geared, model.nv - geared
+        if np.shape(qpos) != (self._nq,) or not np.isfinite(qpos).all():
+            raise BodyError(f"qpos must be {self._nq} numbers, got shape {np.shape(qpos)}")
+        self.data.qpos[: self._nq] = qpos
+        self._seat()
         self.held = True
         self.fault: str | None = None
-        self._actuator = np.array([actuators[joint] for joint in joints])
-        self._horns = Horns(self.model, self.data, joints, signs, offsets)
+        self._actuator = np.array([driven.index(rotor_of(model, joint)) for joint in joints])
         self._first_height = float(self.data.subtree_com[0, 2])
         self._contacts = ContactReader(self.model)
         self._every = round(period / model.opt.timestep)
@@ -106,7 +110,7 @@ class ServoPlant:
         if self.held:
             return
         data = self.data
-        data.ctrl[self._actuator] = self._horns.joint_torque(torque)
+        data.ctrl[self._actuator] = self._joint_torque(torque)
         for _ in range(round(period / self.model.opt.timestep)):
             mujoco.mj_step(self.model, data)
             np.maximum(self._root_force, help_on_root(data), out=self._root_force)
@@ -116,18 +120,6 @@ class ServoPlant:
                 self._note()
         if self.fault is None:
             self._judge()
-
-    def position(self) -> Sequence[float]:
-        """Angle of each horn, rad."""
-        return self._horns.position()
-
-    def velocity(self) -> Sequence[float]:
-        """Velocity of each horn, rad/s."""
-        return self._horns.velocity()
-
-    def jam(self, joint: int, jammed: bool) -> None:
-        """Hold a joint where it is, or let it go."""
-        self._horns.jam(joint, jammed)
 
     # What the hall sees
 
@@ -139,9 +131,9 @@ class ServoPlant:
         """What was noted since it was let go, one row a period.
 
         Returns:
-            time (N,) s; qpos (N, nq); qvel (N, nv); effort (N, nu) N m; com (N, 3) m; root_force
-            (N, 6), the most that anything but floor and gravity did to the root, zero on an honest
-            stage; and the channels of `ContactReader`.
+            time (N,) s; qpos (N, nq) and qvel (N, nv) of the body without rotors; effort (N, nu)
+            N m; com (N, 3) m; root_force (N, 6), the most that anything but floor and gravity did
+            to the root, zero on an honest stage; and the channels of `ContactReader`.
         """
         return {name: np.array(rows) for name, rows in self._tape.items()}
 
@@ -149,8 +141,8 @@ class ServoPlant:
         data = self.data
         row: dict[str, NDArray[np.generic]] = {
             "time": np.array(self._steps * self.model.opt.timestep),
-            "qpos": data.qpos.copy(),
-            "qvel": data.qvel.copy(),
+            "qpos": data.qpos[: self._nq].copy(),
+            "qvel": data.qvel[: self._nv].copy(),
             "effort": data.actuator_force.copy(),
             "com": data.subtree_com[0].copy(),
             "root_force": self._root_force.copy(),

@@ -7,13 +7,14 @@ the stand, gravity and every limb's inertia are there, a floor is not.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from enpointe.errors import BodyError
+from enpointe.sim.gear_play import with_play
 from enpointe.sim.horns import Horns
 
 __all__ = ["StandPlant"]
@@ -21,7 +22,7 @@ __all__ = ["StandPlant"]
 Array = NDArray[np.float64]
 
 
-class StandPlant:
+class StandPlant(Horns):
     """A MuJoCo body without its free root.
 
     Args:
@@ -30,9 +31,10 @@ class StandPlant:
         joints: The joint of each servo, in the order of the bus.
         signs: 1, or -1 where a servo turns the other way than its joint; all 1 without.
         offsets: rad that a servo has where its joint is at zero; all 0 without.
+        play: rad of play in the gears, by joint; none without (see `with_play`).
 
     Raises:
-        BodyError: A joint that the body lacks, or no free root.
+        BodyError: A joint that the body lacks, a play that is none, or no free root.
     """
 
     def __init__(
@@ -43,36 +45,24 @@ class StandPlant:
         *,
         signs: Sequence[float] | None = None,
         offsets: Sequence[float] | None = None,
+        play: Mapping[str, float] | None = None,
     ) -> None:
-        self.model = _hung(spec)
-        known = [self.model.joint(j).name for j in range(self.model.njnt)]
+        model = with_play(_hung(spec), play or {})
+        known = [model.joint(j).name for j in range(model.njnt)]
         if missing := [joint for joint in joints if joint not in known]:
             raise BodyError(f"the body has no joint {', '.join(missing)}")
-        self.data = mujoco.MjData(self.model)
-        self._horns = Horns(self.model, self.data, joints, signs, offsets)
-        self.data.qpos[self._horns.qpos] = angles
-        mujoco.mj_forward(self.model, self.data)
+        super().__init__(model, joints, signs, offsets)
+        self.data.qpos[self._qpos] = angles
+        self._seat()
 
     def advance(self, torque: Sequence[float], period: float) -> None:
         """Go on by a period (s) under the motors' torques (N m)."""
-        self.data.qfrc_applied[self._horns.dofs] = self._horns.joint_torque(torque)
+        self.data.qfrc_applied[self._rotors] = self._joint_torque(torque)
         for _ in range(round(period / self.model.opt.timestep)):
             mujoco.mj_step(self.model, self.data)
 
-    def position(self) -> Sequence[float]:
-        """Angle of each horn, rad."""
-        return self._horns.position()
 
-    def velocity(self) -> Sequence[float]:
-        """Velocity of each horn, rad/s."""
-        return self._horns.velocity()
-
-    def jam(self, joint: int, jammed: bool) -> None:
-        """Hold a joint where it is, or let it go."""
-        self._horns.jam(joint, jammed)
-
-
-def _hung(spec: mujoco.MjSpec) -> mujoco.MjModel:
+def _hung(spec: mujoco.MjSpec) -> mujoco.MjSpec:
     hung = spec.copy()
     roots = [joint for joint in hung.joints if joint.type == mujoco.mjtJoint.mjJNT_FREE]
     if len(roots) != 1:
@@ -83,4 +73,4 @@ def _hung(spec: mujoco.MjSpec) -> mujoco.MjModel:
     for geom in hung.geoms:
         if geom.type == mujoco.mjtGeom.mjGEOM_PLANE:
             geom.contype = geom.conaffinity = 0
-    return hung.compile()
+    return hung

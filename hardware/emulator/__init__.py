@@ -12,7 +12,7 @@ from enpointe.hardware.emulator.description import (
 )
 from enpointe.hardware.emulator.fault_run import FaultRun
 from enpointe.hardware.emulator.faults import Fault, FaultKind, faults_from, load_faults
-from enpointe.hardware.emulator.plant import Load, Loads, Plant
+from enpointe.hardware.emulator.plant import GearedPlant, Load, Loads, Plant
 from enpointe.hardware.emulator.port import EmulatedPort
 from enpointe.hardware.emulator.servo import Servo
 from enpointe.hardware.emulator.terminal import launch
@@ -25,6 +25,7 @@ __all__ = [
     "Fault",
     "FaultKind",
     "FaultRun",
+    "GearedPlant",
     "Load",
     "Loads",
     "Plant",

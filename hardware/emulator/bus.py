@@ -12,7 +12,7 @@ from enpointe.errors import RigError
 from enpointe.hardware.emulator.answering import answers
 from enpointe.hardware.emulator.fault_run import FaultRun
 from enpointe.hardware.emulator.line import Line
-from enpointe.hardware.emulator.plant import Load, Loads, Plant
+from enpointe.hardware.emulator.plant import GearedPlant, Load, Loads, Plant
 from enpointe.hardware.emulator.servo import Servo
 from enpointe.hardware.packets import Packet, PacketReader
 
@@ -90,6 +90,9 @@ class Bus:
                 f"a bus of {len(servos)} servos turns a plant of {len(self.plant.position())}"
                 " joints; give each servo a joint"
             )
+        self._rotors = self.plant.velocity
+        if isinstance(self.plant, GearedPlant):
+            self._rotors = self.plant.rotor_velocity
         self.supply = supply if supply is not None else Supply()
         self.faults = faults
         self.line = Line(baud, instant=not wire_time, latency=latency)
@@ -146,10 +149,13 @@ class Bus:
         drawn = sum(servo.motor.drawn for servo in self.servos)
         volts = self.supply.voltage - self.supply.resistance * drawn
         torques = []
-        places = zip(self.servos, self.plant.position(), self.plant.velocity(), strict=True)
-        for joint, (servo, angle, speed) in enumerate(places):
+        plant = self.plant
+        places = zip(plant.position(), plant.velocity(), self._rotors(), strict=True)
+        for joint, (servo, (angle, speed, rotor)) in enumerate(
+            zip(self.servos, places, strict=True)
+        ):
             supply = volts if self.faults is None else self._disturbed(joint, servo, now, volts)
-            torques.append(servo.tick(now, PERIOD, supply, angle, speed))
+            torques.append(servo.tick(now, PERIOD, supply, angle, speed, rotor))
         self.plant.advance(torques, PERIOD)
 
     def _disturbed(self, joint: int, servo: Servo, now: float, volts: float) -> float:

@@ -9,7 +9,7 @@ from typing import Protocol, runtime_checkable
 
 from enpointe.hardware.datasheet import ServoModel
 
-__all__ = ["Load", "Loads", "Plant"]
+__all__ = ["GearedPlant", "Load", "Loads", "Plant"]
 
 
 @runtime_checkable
@@ -31,6 +31,17 @@ class Plant(Protocol):
 
     def jam(self, joint: int, jammed: bool) -> None:
         """Hold a joint where it is, as gears with a stone in them do, or let it go."""
+
+
+@runtime_checkable
+class GearedPlant(Plant, Protocol):
+    """A plant whose gears may have play, so that a motor can turn while its horn doesn't.
+
+    Sensors see the horns; what the motors' windings feel is their own turning.
+    """
+
+    def rotor_velocity(self) -> Sequence[float]:
+        """Velocity of the motors' side of the gears, as horns would turn without play, rad/s."""
 
 
 @dataclass(frozen=True, slots=True)

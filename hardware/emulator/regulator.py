@@ -82,7 +82,15 @@ class Regulator:
         else:
             self.profile.aim(goal, speed * _VELOCITY, rise * _ACCELERATION)
 
-    def duty(self, position: int, speed: float, supply: float, period: float) -> float:
+    def duty(
+        self,
+        position: int,
+        speed: float,
+        supply: float,
+        period: float,
+        *,
+        rotor: float | None = None,
+    ) -> float:
         """The share of the supply for the next period, -1 to 1.
 
         Args:
@@ -90,19 +98,22 @@ class Regulator:
             speed: pulses/s.
             supply: V.
             period: s.
+            rotor: Velocity of the motor's side of the gears, pulses/s; as the horn's if None. A
+                current is regulated against what the motor's own turning takes of the voltage.
         """
+        turning = speed if rotor is None else rotor
         mode = self._memory.values["Operating Mode"]
         if mode in (Mode.POSITION, Mode.EXTENDED_POSITION):
             return self._within_pwm(self._position(position, speed, period, FULL_PWM) / FULL_PWM)
         if mode == Mode.CURRENT_BASED_POSITION:
             limit = abs(self._memory["Goal Current"])
-            return self._current(self._position(position, speed, period, limit), speed, supply)
+            return self._current(self._position(position, speed, period, limit), turning, supply)
         if mode == Mode.VELOCITY:
             return self._within_pwm(self._velocity(speed, period) / FULL_PWM)
         if self._stopped:
             return 0.0
         if mode == Mode.CURRENT:
-            return self._current(self._memory["Goal Current"], speed, supply)
+            return self._current(self._memory["Goal Current"], turning, supply)
         return self._within_pwm(self._memory["Goal PWM"] / FULL_PWM)
 
     def _position(self, position: int, speed: float, period: float, limit: int) -> float:

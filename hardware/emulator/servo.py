@@ -16,7 +16,7 @@ from enpointe.hardware.emulator.ranges import GOALS, allowed
 from enpointe.hardware.emulator.regulator import Mode, Regulator
 from enpointe.hardware.emulator.reporting import moving, report
 from enpointe.hardware.packets import StatusError
-from enpointe.hardware.units import BAUD_RATES, RETURN_DELAY, WATCHDOG
+from enpointe.hardware.units import BAUD_RATES, PULSE, RETURN_DELAY, WATCHDOG
 
 __all__ = ["BOOT_SECONDS", "FIRMWARE", "Servo"]
 
@@ -119,7 +119,15 @@ class Servo:
         self.horn.move(angle, 0.0)
         self._boot()
 
-    def tick(self, time: float, period: float, supply: float, angle: float, speed: float) -> float:
+    def tick(
+        self,
+        time: float,
+        period: float,
+        supply: float,
+        angle: float,
+        speed: float,
+        rotor: float | None = None,
+    ) -> float:
         """One turn of the inner loop.
 
         Args:
@@ -128,6 +136,7 @@ class Servo:
             supply: V at its terminals.
             angle: Of the horn, rad.
             speed: Of the horn, rad/s.
+            rotor: Of the motor's side of the gears, rad/s; as the horn if None.
 
         Returns:
             Torque of the motor at the horn, N m.
@@ -144,8 +153,11 @@ class Servo:
             self.motor.rest(period)
             return 0.0
         horn = self.horn
-        duty = self.regulator.duty(horn.position, horn.rate, supply, period)
-        self.motor.drive(horn.sense * duty, supply, speed, period)
+        turning = speed if rotor is None else rotor
+        duty = self.regulator.duty(
+            horn.position, horn.rate, supply, period, rotor=horn.sense * turning / PULSE
+        )
+        self.motor.drive(horn.sense * duty, supply, turning, period)
         return self.motor.torque
 
     @property

@@ -70,3 +70,17 @@ def test_on_a_stand_it_hangs_and_is_parked(tmp_path: Path) -> None:
     assert figures["ending"].startswith("parked")
     assert figures["root_off_max"] is None
     assert figures["tracking_rms_deg"] < 3.0
+
+
+@pytest.mark.slow
+def test_with_play_in_her_gears_she_still_stands_and_turns_less_exactly(tmp_path: Path) -> None:
+    """Her waist, which no weight presses to one side, goes to and fro in its play."""
+    waist = {}
+    for backlash in (0.0, 0.5):
+        danced = servo(nod(tmp_path), port="simulated", stand=False, backlash=backlash)
+        assert danced.completed
+        assert ("play" in danced.stage) is (backlash > 0.0)
+        assert danced.staged is not None
+        assert np.all(danced.staged.stage["root_force"] == 0.0)
+        waist[backlash] = danced.tracking_by_joint()["waist_turn"]
+    assert waist[0.0] < 0.1 < waist[0.5] < 0.5

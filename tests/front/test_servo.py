@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from enpointe.cli import _run
+from enpointe.errors import RigError
 from enpointe.hardware.dynamixel import description_of
 from enpointe.hardware.emulator import Fault, FaultKind, launch
 from enpointe.hardware.rig_file import Rig, load_rig
@@ -165,3 +166,11 @@ def test_the_doctor_looks_at_a_rig_on_a_port(capfd: pytest.CaptureFixture[str]) 
         assert _run(["doctor", "--rig", "puppet", "--port", port, "--json"]) == 1
         lines = json.loads(capfd.readouterr().out)["rig"]
     assert any("servo 21" in line or "no answer" in line for line in lines)
+
+
+def test_gears_have_play_only_where_a_body_hangs_on_them() -> None:
+    with pytest.raises(RigError, match="simulated"):
+        servo("third-port-de-bras", port="memory", backlash=0.25)
+    for backlash in (-0.1, 7.0, float("nan")):
+        with pytest.raises(RigError, match="backlash"):
+            servo("third-port-de-bras", port="simulated", backlash=backlash)
