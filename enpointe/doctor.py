@@ -21,6 +21,8 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from enpointe.hardware.dynamixel.port_users import lurkers, others_on
+
 __all__ = [
     "Diagnosis",
     "Encoder",
@@ -98,6 +100,7 @@ class SerialPort:
         description: What the adapter calls itself; empty where it doesn't say.
         latency_ms: The FTDI latency timer in milliseconds; None where the port has none.
         usable: Whether this user may read and write it.
+        in_use: Which other programs have it open and how to end them; None where none are seen.
         note: What to do about it.
     """
 
@@ -105,6 +108,7 @@ class SerialPort:
     description: str
     latency_ms: int | None
     usable: bool
+    in_use: str | None
     note: str | None
 
 
@@ -157,6 +161,8 @@ def examine() -> Diagnosis:
     advice = [_mend(version) for version in versions if version.needed and not version.ok]
     notes = (opengl.note, encoder.note, *(port.note for port in ports), machine.note)
     advice += [note for note in notes if note is not None]
+    if ports:
+        advice += lurkers()
     return Diagnosis(versions, opengl, encoder, ports, machine, tuple(advice))
 
 
@@ -297,16 +303,17 @@ def _serial_ports(system: Path) -> Iterator[SerialPort]:
         timer = system / "bus" / "usb-serial" / "devices" / port.name / "latency_timer"
         latency = _read_int(timer)
         usable = os.access(port.device, os.R_OK | os.W_OK)
-        note = None
+        in_use = others_on(port.device)
+        note = in_use
         if not usable:
             note = f"{port.device}: no leave to open it; add yourself to the group that owns it"
-        elif latency is not None and latency > _SLOW_LATENCY_MS:
+        elif not in_use and latency is not None and latency > _SLOW_LATENCY_MS:
             note = (
                 f"{port.device}: the latency timer of {latency} ms slows every read; "
                 f"echo {_SLOW_LATENCY_MS} | sudo tee {timer}"
             )
         description = "" if port.description in (None, "n/a") else str(port.description)
-        yield SerialPort(port.device, description, latency, usable, note)
+        yield SerialPort(port.device, description, latency, usable, in_use, note)
 
 
 def _read_int(path: Path) -> int | None:

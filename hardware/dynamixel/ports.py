@@ -13,6 +13,7 @@ import serial
 from dynamixel_sdk import PortHandler
 
 from enpointe.errors import RigError
+from enpointe.hardware.dynamixel.port_users import lurkers, others_on
 
 __all__ = ["PatientPort", "latency_timer", "open_port"]
 
@@ -49,6 +50,8 @@ def open_port(name: str, baud: int) -> Any:
     try:
         opened = port.setBaudRate(baud)
     except (serial.SerialException, OSError, ValueError) as error:
+        if getattr(error, "errno", None) == errno.EBUSY:
+            raise RigError(_taken(name)) from error
         raise RigError(f"{name} can't be opened: {_why(error)}") from error
     if not opened:
         raise RigError(f"the dynamixel-sdk can't talk at {baud} bit/s; choose another baud rate")
@@ -56,7 +59,10 @@ def open_port(name: str, baud: int) -> Any:
         _keep_others_out(port.ser)
     except OSError as error:
         port.closePort()
-        raise RigError(f"another program has {name}; end it, a bus has one owner") from error
+        raise RigError(_taken(name)) from error
+    if (others := others_on(name)) is not None:
+        port.closePort()
+        raise RigError(others)
     return port
 
 
@@ -68,10 +74,19 @@ def _keep_others_out(line: Any) -> None:
     fcntl.flock(line.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
+def _taken(name: str) -> str:
+    """Who has a port that could not be had, as far as one may look."""
+    if (others := others_on(name)) is not None:
+        return others
+    who = f"another user's program has {name}, and a bus has one owner"
+    return "; ".join([who, *(lurkers() or [f"find it: sudo fuser -v {name}"])])
+
+
 def _why(error: Exception) -> str:
     code = getattr(error, "errno", None)
     if code == errno.ENOENT:
-        return "there is no such port; `enpointe doctor` lists those there are"
+        missing = "there is no such port; `enpointe doctor` lists those there are"
+        return "; ".join([missing, *lurkers()])
     if code in (errno.EACCES, errno.EPERM):
         return "no leave; add yourself to the group that owns it (often dialout) and log in again"
     return " ".join(str(error).split())

@@ -7,6 +7,8 @@ import importlib.metadata
 import json
 import os
 import platform
+import subprocess
+import sys
 from collections.abc import Callable, Mapping
 from io import StringIO
 from pathlib import Path
@@ -227,6 +229,22 @@ def test_a_quick_or_unreadable_latency_timer_needs_no_advice(
     port = ports_of(plugged_in)["ttyUSB0"]
     assert port.latency_ms == latency
     assert port.note is None
+
+
+def test_a_port_that_another_program_has_is_said_with_its_name(plugged_in: Path) -> None:
+    """Before its latency, which can wait."""
+    port = next(path for path in ports_of(plugged_in))
+    device = plugged_in.parents[5] / port
+    holds = "import sys; port = open(sys.argv[1]); print('open', flush=True); sys.stdin.read()"
+    command = [sys.executable, "-c", holds, str(device)]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as program:
+        assert program.stdout is not None
+        assert program.stdout.readline() == b"open\n"
+        found = ports_of(plugged_in)[port]
+        program.communicate()
+    assert f"(process {program.pid})" in str(found.in_use)
+    assert found.note == found.in_use
+    assert ports_of(plugged_in)[port].in_use is None
 
 
 def test_a_port_that_may_not_be_opened_is_said(

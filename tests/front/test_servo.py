@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -129,6 +132,27 @@ def test_what_cannot_be_is_refused_in_a_line(
     wave: Path, arguments: tuple[str, ...], told: str, capfd: pytest.CaptureFixture[str]
 ) -> None:
     assert told in refused(capfd, "servo", str(wave), "--as-written", *arguments)
+
+
+@pytest.mark.parametrize("words", [("servo", "wave", "--as-written"), ("doctor",)])
+def test_a_port_that_another_program_has_is_refused_with_its_name(
+    words: tuple[str, ...], wave: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    if not Path("/proc/self/fd").is_dir():
+        pytest.skip("only Linux lists who has a port open")
+    ours, theirs = os.openpty()
+    port = os.ttyname(theirs)
+    holds = "import os, sys; os.open(sys.argv[1], os.O_RDWR); print(1, flush=True); input()"
+    arguments = [str(wave) if word == "wave" else word for word in words]
+    command = [sys.executable, "-c", holds, port]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as program:
+        assert program.stdout is not None
+        program.stdout.readline()
+        line = refused(capfd, *arguments, "--rig", "op3", "--port", port)
+        program.communicate(b"\n")
+    for end in (ours, theirs):
+        os.close(end)
+    assert f"(process {program.pid}) has {port} open" in line
 
 
 def test_calibrate_wants_a_file_or_set_up(capfd: pytest.CaptureFixture[str]) -> None:
