@@ -30,13 +30,13 @@ from enpointe.models.anatomy import SIDES
 from enpointe.models.soles import sole_geoms, sole_points
 from enpointe.motion.averaging import averaged_qpos
 from enpointe.motion.contact_schedule import ContactSchedule, contact_schedule
+from enpointe.motion.danced_poses import THIGHS, DancedPoses
 from enpointe.motion.feet_over_floor import FeetOverFloor
 from enpointe.motion.footprints import Footing, footings
 from enpointe.motion.limbs_apart import LimbsApart
 from enpointe.motion.motion import Motion
 from enpointe.motion.retargeting.body import Body
 from enpointe.motion.retargeting.holding import runs
-from enpointe.motion.retargeting.landmarks import sided
 from enpointe.motion.retargeting.posing import Directions
 from enpointe.motion.weight_plan import WeightPlan, plan_weight
 
@@ -49,7 +49,6 @@ _DT = 1.0
 _FIRST, _EACH, _ANEW = 60, 3, 8
 _PELVIS, _TORSO, _HEAD = 2.0, 1.5, 0.7
 _TURNOUT = 0.3
-_THIGHS = ("left_thigh", "right_thigh")
 _ROOT = 4.0
 _ROOT_BALANCED = (0.2, 0.2, 4.0)
 _WEIGHT = (20.0, 20.0, 0.0)
@@ -115,7 +114,7 @@ def puppeteer(
     scale = body.leg / dancer.leg
     time = np.arange(0.0, motion.duration + 0.5 / RATE, 1.0 / RATE)
     danced = np.array([motion.sample(float(t))[0] for t in time])
-    source = _Source(dancer, danced)
+    source = DancedPoses(dancer, danced)
     planned = contact_schedule(motion)
     bears = np.array([planned.bears[planned.index(float(t))] for t in time])
     owner = motion.model.geom_bodyid[planned.soles]
@@ -179,54 +178,12 @@ def _opening(feet: dict[str, Footing]) -> float:
     return float(np.linalg.norm(apart[both], axis=1).max(initial=0.0))
 
 
-class _Source:
-    """What is read off the dancer."""
-
-    def __init__(self, dancer: Body, qpos: Array) -> None:
-        model = dancer.model
-        data = mujoco.MjData(model)
-        self.count = len(qpos)
-        segments = dancer.segments
-        self.directions = {name: np.empty((len(qpos), 3)) for name in segments}
-        self.frames = {part: np.empty((len(qpos), 3, 3)) for part in dancer.bodies}
-        self.thighs = {thigh: np.empty((len(qpos), 3, 3)) for thigh in _THIGHS}
-        sites = sided("hip", "ankle", "ball")
-        self.points = {name: np.empty((len(qpos), 3)) for name in sites}
-        self.pelvis = np.empty((len(qpos), 3))
-        self.angles: dict[str, Array] = {}
-        for joint in range(1, model.njnt):
-            self.angles[model.joint(joint).name] = qpos[:, model.jnt_qposadr[joint]]
-        for i, row in enumerate(qpos):
-            data.qpos[:] = row
-            mujoco.mj_kinematics(model, data)
-            for name, (start, end, length) in segments.items():
-                self.directions[name][i] = (data.site_xpos[end] - data.site_xpos[start]) / length
-            for part, frames in self.frames.items():
-                frames[i] = data.xmat[dancer.bodies[part]].reshape(3, 3)
-            for thigh, frames in self.thighs.items():
-                frames[i] = data.body(thigh).xmat.reshape(3, 3)
-            for name, points in self.points.items():
-                points[i] = data.site(name).xpos
-            self.pelvis[i] = data.xpos[dancer.bodies["pelvis"]]
-
-    @property
-    def feet(self) -> dict[str, tuple[Array, Array, Array, Array]]:
-        """Of each side what `footings` asks for."""
-        return {
-            side: (
-                self.points[f"{side}_ball"],
-                self.frames[f"{side}_toe"],
-                self.frames[f"{side}_foot"],
-                self.points[f"{side}_ankle"],
-            )
-            for side in SIDES
-        }
-
-
 class _Poser:
     """Sample by sample, the pose that comes nearest."""
 
-    def __init__(self, source: _Source, body: Body, scale: float, feet: dict[str, Footing]) -> None:
+    def __init__(
+        self, source: DancedPoses, body: Body, scale: float, feet: dict[str, Footing]
+    ) -> None:
         self._source, self._body, self._scale, self._feet = source, body, scale, feet
         model = body.model
         names = [name for name in body.segments if not name.endswith("_hand")]
@@ -236,7 +193,7 @@ class _Poser:
             part: mink.FrameTask(part, "body", 0.0, cost)
             for part, cost in (("pelvis", _PELVIS), ("torso", _TORSO), ("head", _HEAD))
         }
-        self._turned |= {thigh: mink.FrameTask(thigh, "body", 0.0, _TURNOUT) for thigh in _THIGHS}
+        self._turned |= {thigh: mink.FrameTask(thigh, "body", 0.0, _TURNOUT) for thigh in THIGHS}
         self._pelvis = self._turned["pelvis"]
         self._soles = {s: mink.FrameTask(f"{s}_foot", "body", _FREE, _LOOSE) for s in SIDES}
         self._like_hers = _like_hers(model, source.angles)
@@ -297,7 +254,7 @@ class _Poser:
         for part in ("torso", "head"):
             rotation = mink.SO3.from_matrix(source.frames[part][i])
             self._turned[part].set_target(mink.SE3.from_rotation(rotation))
-        for part in _THIGHS:
+        for part in THIGHS:
             rotation = mink.SO3.from_matrix(source.thighs[part][i])
             self._turned[part].set_target(mink.SE3.from_rotation(rotation))
         turn = source.frames["pelvis"][i]
