@@ -199,11 +199,20 @@ class Workbench:
         self, body: mujoco.MjsBody, start: Vec, end: Vec, radius: float, part: str = "limb"
     ) -> None:
         """A capsule that meets the floor and other limbs."""
+        self._limb(
+            body, part, mujoco.mjtGeom.mjGEOM_CAPSULE,
+            fromto=[*start, *end], size=[radius, 0, 0],
+        )  # fmt: skip
+
+    def touching_box(self, body: mujoco.MjsBody, pos: Vec, size: Vec, part: str = "limb") -> None:
+        """A box that does, of full width, depth and height `size`."""
+        self._limb(body, part, mujoco.mjtGeom.mjGEOM_BOX, pos=pos, size=0.5 * np.asarray(size))
+
+    def _limb(self, body: mujoco.MjsBody, part: str, kind: mujoco.mjtGeom, **shape: object) -> None:
         body.add_geom(
             name=f"{body.name}_{part}",
-            type=mujoco.mjtGeom.mjGEOM_CAPSULE,
-            fromto=[*start, *end],
-            size=[radius, 0, 0],
+            type=kind,
+            **shape,
             mass=0.0,
             contype=_LIMB_CLASS,
             conaffinity=_LIMB_CLASS,

@@ -70,7 +70,7 @@ SOLE_RADIUS = 0.004
 RANGES_DEG: Mapping[str, tuple[float, float]] = MappingProxyType(
     {
         "waist_turn": (-60, 60),
-        "waist_bend": (-40, 85),
+        "waist_bend": (-40, 65),
         "neck_turn": (-80, 80),
         "neck_tilt": (-35, 35),
         "neck_bend": (-45, 45),

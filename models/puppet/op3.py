@@ -3,7 +3,9 @@
 Names, axes, offsets, masses, centres of mass and inertias: ROBOTIS-OP3-Common (op3_description),
 with the principal inertias of mujoco_menagerie (robotis_op3) turned into the links' axes. Joint
 limits: ROBOTIS-OP3, op3_kinematics_dynamics; the knee's there is 126 degrees, but ROBOTIS' own
-initial pose bends it 142, so that it is 145 here. At zero the legs are straight and the arms level
+initial pose bends it 142, so that it is 145 here; the published meshes of thigh and shank meet at
+148. What of shank and foot touches follows the meshes too: they say that the ankle has all of its
+range, unless it is rolled as well. At zero the legs are straight and the arms level
 out to the sides. Joints have ROBOTIS' names; bodies and sites have those of the dancer's parts, so
 that whatever moves, balances and measures the dancer does the same with OP3.
 """
@@ -237,8 +239,9 @@ def _shape_leg(bench: Workbench, links: dict[str, mujoco.MjsBody], side: str) ->
     bench.box(foot, f"{side}_foot_broad", 0, (0.024, s * 0.0125, -0.0265), (0.114, 0.078, 0.007),
               _WHITE)  # fmt: skip
     bench.touching(thigh, (0, middle, -0.040), (0, middle, -0.095), 0.020)
-    bench.touching(shank, (0, middle, -0.025), (0, middle, -0.080), 0.020)
-    bench.touching(foot, (-0.010, s * 0.0125, -0.012), (0.060, s * 0.0125, -0.018), 0.008)
+    # Two plates 44 mm apart over all and 22 mm deep, with a bridge of 30 mm between them.
+    bench.touching_box(shank, (0, s * -0.020, -0.0425), (0.025, 0.044, 0.075))
+    bench.touching(foot, (-0.010, s * 0.0125, -0.020), (0.060, s * 0.0125, -0.020), 0.008)
     bench.mark(thigh, f"{side}_hip", (0, middle, 0))
     bench.mark(shank, f"{side}_knee", (0, middle, 0))
     bench.mark(foot, f"{side}_ankle", (0.0241, 0, 0))

@@ -145,7 +145,7 @@ def _fill_torso(bench: Workbench, torso: mujoco.MjsBody) -> None:
     bench.box(torso, "hub_and_adapter", 0.050, (-0.026, 0, 0.065), (0.018, 0.050, 0.070), ALUMINIUM)
     bench.ball(torso, "chest_shell", 0.045, (0.002, 0, 0.098), (0.034, 0.056, 0.042), _TUNIC)
     bench.ball(torso, "rib_shell", 0.015, (0.002, 0, 0.050), (0.030, 0.043, 0.045), _TUNIC)
-    bench.touching(torso, (0, 0, 0.03), (0, 0, 0.06), 0.032)
+    bench.touching(torso, (0, 0, 0.038), (0, 0, 0.06), 0.032)
     bench.touching(torso, (0, -0.024, 0.095), (0, 0.024, 0.095), 0.030, "chest")
 
 
