@@ -202,11 +202,15 @@ def servo(
         EnpointeError: The rig can't begin, no time is enough for the movement, or anything else
             that the caller can mend.
     """
+    from enpointe.hardware.dynamixel.port_users import others_on
     from enpointe.hardware.rig_file import Rig, load_rig
 
     chosen = rig if isinstance(rig, Rig) else load_rig(rig)
-    if faults and port not in (EMULATED, MEMORY, SIMULATED):
-        raise RigError(f"faults happen on an emulated bus; {port} has its own")
+    if port not in (EMULATED, MEMORY, SIMULATED):
+        if faults:
+            raise RigError(f"faults happen on an emulated bus; {port} has its own")
+        if (others := others_on(port)) is not None:  # before anything is computed for it
+            raise RigError(others)
     if backlash and port != SIMULATED:
         raise RigError(f"gears have play where a body hangs on them: use --port {SIMULATED}")
     if not 0.0 <= backlash < _MOST_PLAY:
