@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
+from PIL import Image
 
 from enpointe.danced import Danced
 from enpointe.preparing import Progress
@@ -25,7 +26,7 @@ from enpointe.sim.video import (
     write_mp4,
 )
 
-__all__ = ["FilmFile", "film_of"]
+__all__ = ["FilmFile", "FilmSize", "film_of"]
 
 HEIGHT_ONE, HEIGHT_SEVERAL = 600, 400
 FPS, FPS_SLOW = 20.0, 10.0
@@ -55,6 +56,45 @@ class FilmFile:
     size: tuple[int, int]
 
 
+@dataclass(frozen=True, slots=True)
+class FilmSize:
+    """How large and how fine a film is that this machine can paint in time.
+
+    Attributes:
+        width: Of each of those side by side, pixels.
+        height: Pixels.
+        fps: Frames a second.
+        mp4: Whether it is one, and not a GIF.
+    """
+
+    width: int
+    height: int
+    fps: float
+    mp4: bool
+
+    @classmethod
+    def of(cls, durations: Sequence[float]) -> FilmSize:
+        """For dances of so many seconds, side by side if there are several."""
+        mp4, sketched = can_write_mp4(), gl_backend() is None
+        height = HEIGHT_SEVERAL if len(durations) > 1 else HEIGHT_ONE
+        if sketched or not mp4:
+            height = int(SMALLER * height)
+        wanted = FPS if mp4 and not sketched else FPS_SLOW
+        most = FRAMES_MAX_SKETCHED if sketched else FRAMES_MAX
+        affordable = most / (max(durations) * len(durations))
+        fps = max(min(wanted, affordable), FPS_MIN)
+        return cls(round(ASPECT * height), height, fps, mp4)
+
+    def write(self, folder: Path, pictures: Iterator[Image.Image]) -> FilmFile:
+        """Write a film into a folder, and read it back."""
+        first = next(pictures)
+        name = "dance.mp4" if self.mp4 else "dance.gif"
+        write = write_mp4 if self.mp4 else write_gif
+        path = write(folder / name, itertools.chain([first], pictures), self.fps)
+        mime = "video/mp4" if self.mp4 else "image/gif"
+        return FilmFile(name, path.read_bytes(), mime, first.size)
+
+
 def film_of(performances: Mapping[str, Danced], progress: Progress) -> FilmFile:
     """Film performances, side by side if there are several.
 
@@ -62,20 +102,10 @@ def film_of(performances: Mapping[str, Danced], progress: Progress) -> FilmFile:
         performances: By caption; a single one needs none.
         progress: Told how many frames are painted.
     """
-    mp4, sketched = can_write_mp4(), gl_backend() is None
-    several = len(performances) > 1
-    height = HEIGHT_SEVERAL if several else HEIGHT_ONE
-    if sketched or not mp4:
-        height = int(SMALLER * height)
-    width = round(ASPECT * height)
-    longest = max(p.danced.duration for p in performances.values())
-    wanted = FPS if mp4 and not sketched else FPS_SLOW
-    most = FRAMES_MAX_SKETCHED if sketched else FRAMES_MAX
-    affordable = most / (longest * len(performances))
-    fps = max(min(wanted, affordable), FPS_MIN)
     motions = [p.danced for p in performances.values()]
+    size = FilmSize.of([motion.duration for motion in motions])
     view = _view(performances)
-    frames = sum(len(frame_samples(m.time, fps)) for m in motions)
+    frames = sum(len(frame_samples(m.time, size.fps)) for m in motions)
     painted = 0
 
     def count(_done: int, _total: int) -> None:
@@ -84,7 +114,7 @@ def film_of(performances: Mapping[str, Danced], progress: Progress) -> FilmFile:
         progress("film", painted, frames)
 
     # One painter serves all: contexts are dear, and the variants share the body.
-    painter, _ = open_painter(motions[0].model, width, height)
+    painter, _ = open_painter(motions[0].model, size.width, size.height)
     with painter, TemporaryDirectory() as folder:
         reels = [
             film(
@@ -92,19 +122,16 @@ def film_of(performances: Mapping[str, Danced], progress: Progress) -> FilmFile:
                 motion.qpos,
                 painter,
                 view,
-                fps,
+                size.fps,
                 overlays=_overlays(performance),
                 progress=count,
             )
             for performance, motion in zip(performances.values(), motions, strict=True)
         ]
-        pictures = side_by_side(reels, list(performances)) if several else reels[0]
-        first = next(pictures)
-        name = "dance.mp4" if mp4 else "dance.gif"
-        write = write_mp4 if mp4 else write_gif
-        path = write(Path(folder) / name, itertools.chain([first], pictures), fps)
-        data = path.read_bytes()
-    return FilmFile(name, data, "video/mp4" if mp4 else "image/gif", first.size)
+        several = len(performances) > 1
+        return size.write(
+            Path(folder), side_by_side(reels, list(performances)) if several else reels[0]
+        )
 
 
 def _view(performances: Mapping[str, Danced]) -> View:

@@ -100,6 +100,7 @@ def test_the_command_prints_its_figures_and_writes_its_files(
     figures = one_object(capfd.readouterr().out)
     assert figures["completed"] is True
     assert {Path(path).name for path in figures["files"].values()} == {
+        "feasibility.html",
         "motion.npz",
         "recording.npz",
     }
@@ -112,7 +113,7 @@ def test_a_dry_run_says_whether_and_dances_nothing(
     words = ["servo", str(wave), "--rig", "op3", "--dry-run", "--out", str(tmp_path), "--json"]
     assert _run(words) == 0
     assert one_object(capfd.readouterr().out)["feasible"] is True
-    assert list(tmp_path.iterdir()) == []
+    assert [path.name for path in tmp_path.iterdir()] == ["feasibility.html"]
 
 
 @pytest.mark.parametrize(
