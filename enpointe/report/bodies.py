@@ -24,7 +24,8 @@ from enpointe.report.blocks import (
     data_uri,
 )
 from enpointe.report.effort_kept import effort_table
-from enpointe.report.films import FilmFile, FilmSize
+from enpointe.report.facing import in_front_of, seen_from
+from enpointe.report.films import HALL, FilmFile, FilmSize
 from enpointe.report.pictures import fitted_view
 from enpointe.report.tracking import tracking_chart, worst_joints
 from enpointe.report.words import DASH
@@ -56,8 +57,9 @@ def draw_bodies(
     if video:
         reel, warning = _film(shown, progress)
         caption = (
-            "At the same moments; each at the size of the picture. What hangs on a stand, or does "
-            "not feel where its trunk is, is shown with the trunk where it began."
+            f"At the same moments, each at the size of the picture. {seen_from(shown.asked)} What "
+            "hangs on a stand, or does not feel where its trunk is, is shown with the trunk where "
+            "it began."
         )
         block = Film(data_uri(reel.mime, reel.data), reel.mime, reel.size, "The bodies", caption)
         sections.insert(0, Section("film", "Side by side", (block,)))
@@ -102,8 +104,8 @@ def _facts(shown: BodyComparison) -> tuple[tuple[str, str], ...]:
 
 
 def _film(shown: BodyComparison, progress: Progress) -> tuple[FilmFile, str | None]:
-    """Bodies side by side, each from the audience and as large as the others."""
-    motions = shown.motions
+    """Bodies side by side, each as large as the others."""
+    motions, front = shown.motions, in_front_of(shown.asked, HALL)
     size = FilmSize.of([motion.duration for motion in motions.values()])
     frames = sum(len(frame_samples(motion.time, size.fps)) for motion in motions.values())
     painted = 0
@@ -118,15 +120,15 @@ def _film(shown: BodyComparison, progress: Progress) -> tuple[FilmFile, str | No
         for motion in motions.values():
             painter, warning = open_painter(motion.model, size.width, size.height)
             open_.enter_context(painter)
-            view = _view(motion)
+            view = _fitted(motion, front)
             reels.append(film(motion.time, motion.qpos, painter, view, size.fps, progress=count))
         pictures = side_by_side(reels, list(motions))
         return size.write(Path(folder), pictures), warning
 
 
-def _view(motion: Motion) -> View:
+def _fitted(motion: Motion, view: View) -> View:
     some = np.unique(np.linspace(0, len(motion.time) - 1, _FITTED_POSES).astype(int))
-    return fitted_view(motion.model, list(motion.qpos[some]), View(elevation=-9.0))
+    return fitted_view(motion.model, list(motion.qpos[some]), view)
 
 
 def _arms(bodies: dict[str, BodyFigures]) -> tuple[Table, ...]:

@@ -26,7 +26,7 @@ from enpointe.sim.video import (
     write_mp4,
 )
 
-__all__ = ["FilmFile", "FilmSize", "film_of"]
+__all__ = ["HALL", "FilmFile", "FilmSize", "film_of"]
 
 HEIGHT_ONE, HEIGHT_SEVERAL = 600, 400
 FPS, FPS_SLOW = 20.0, 10.0
@@ -36,6 +36,8 @@ FRAMES_MAX, FRAMES_MAX_SKETCHED = 700, 250
 FPS_MIN = 4.0
 SMALLER = 0.6
 """Scale of a GIF and of a sketched film."""
+HALL = View(elevation=-9.0)
+"""From the audience, a little above so that the floor is seen."""
 _FITTED_POSES = 40
 
 
@@ -95,16 +97,17 @@ class FilmSize:
         return FilmFile(name, path.read_bytes(), mime, first.size)
 
 
-def film_of(performances: Mapping[str, Danced], progress: Progress) -> FilmFile:
+def film_of(performances: Mapping[str, Danced], progress: Progress, view: View = HALL) -> FilmFile:
     """Film performances, side by side if there are several.
 
     Args:
         performances: By caption; a single one needs none.
         progress: Told how many frames are painted.
+        view: From where; so far back that all are in the picture.
     """
     motions = [p.danced for p in performances.values()]
     size = FilmSize.of([motion.duration for motion in motions])
-    view = _view(performances)
+    view = _fitted(performances, view)
     frames = sum(len(frame_samples(m.time, size.fps)) for m in motions)
     painted = 0
 
@@ -134,15 +137,14 @@ def film_of(performances: Mapping[str, Danced], progress: Progress) -> FilmFile:
         )
 
 
-def _view(performances: Mapping[str, Danced]) -> View:
-    """From the audience, a little above so that the floor is seen."""
+def _fitted(performances: Mapping[str, Danced], view: View) -> View:
     poses = []
     for performance in performances.values():
         qpos = performance.danced.qpos
         some = np.unique(np.linspace(0, len(qpos) - 1, _FITTED_POSES).astype(int))
         poses += list(qpos[some])
     model = next(iter(performances.values())).motion.model
-    return fitted_view(model, poses, View(elevation=-9.0))
+    return fitted_view(model, poses, view)
 
 
 def _overlays(performance: Danced) -> Callable[[int], Overlays | None] | None:
