@@ -10,6 +10,7 @@ import typer
 
 from enpointe.console import Console, rows
 from enpointe.errors import RigError
+from enpointe.files import refuse_unwritable
 from enpointe.options import (
     Effort,
     Json,
@@ -92,6 +93,7 @@ def servo(
             stand=stand,
         )
         return _say(console, found, write_feasibility(found, folder), output)
+    refuse_unwritable(folder / "recording.npz")
     with console.progress() as progress:
         danced = dance(
             source,

@@ -40,15 +40,18 @@ def in_step(motion: Motion, other: Motion) -> tuple[Motion, float]:
     late = np.abs(scale * here + delay - there).max() if scale > 0.0 else np.inf
     if late > _TOGETHER or delay < -_TOGETHER:
         raise MotionError(
-            f"{other.name} is no dance of {motion.name}: it has {len(there)} key poses at other"
-            f" moments than these {len(here)}"
+            f"{other.name} is no dance of {motion.name}: it has other key poses or another rhythm"
         )
     return _delayed(slowed(motion, float(scale)), max(float(delay), 0.0)), float(scale)
 
 
 def _moments(motion: Motion) -> np.ndarray:
     moments = np.array([event.time for event in motion.key_events])
-    return moments if len(moments) > 1 else np.array([0.0, motion.duration])
+    return (
+        moments
+        if len(moments) > 1 and moments[-1] > moments[0]
+        else np.array([0.0, motion.duration])
+    )
 
 
 def _delayed(motion: Motion, delay: float) -> Motion:

@@ -131,6 +131,14 @@ def test_what_cannot_be_is_refused_in_a_line(
     assert told in refused(capfd, "servo", str(wave), "--as-written", *arguments)
 
 
+def test_a_folder_that_cannot_be_is_known_before_the_dance(
+    wave: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("enpointe.servoing.servo", lambda *_, **__: pytest.fail("danced"))
+    words = ["servo", str(wave), "--rig", "op3", "--port", "memory", "--out", str(wave / "out")]
+    assert "is a file where a folder should be" in refused(capfd, *words)
+
+
 def test_calibrate_wants_a_file_or_set_up(capfd: pytest.CaptureFixture[str]) -> None:
     assert "--out" in refused(capfd, "calibrate", "--port", "/dev/null")
 
