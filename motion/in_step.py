@@ -15,6 +15,7 @@ __all__ = ["in_step"]
 _TOGETHER = 0.02
 """s that a key pose may be off its moment: two samples of a rig."""
 _AT_ONCE = 1e-6
+"""s that is no delay."""
 
 
 def in_step(motion: Motion, other: Motion) -> tuple[Motion, float]:
@@ -47,11 +48,9 @@ def in_step(motion: Motion, other: Motion) -> tuple[Motion, float]:
 
 def _moments(motion: Motion) -> np.ndarray:
     moments = np.array([event.time for event in motion.key_events])
-    return (
-        moments
-        if len(moments) > 1 and moments[-1] > moments[0]
-        else np.array([0.0, motion.duration])
-    )
+    if len(moments) < 2 or moments[-1] <= moments[0]:
+        return np.array([0.0, motion.duration])
+    return moments
 
 
 def _delayed(motion: Motion, delay: float) -> Motion:

@@ -39,7 +39,7 @@ def test_key_poses_come_together_and_the_way_is_the_same(scale: float, delay: fl
     led, found = in_step(motion, elsewhere(scale * np.array(MOMENTS) + delay, 12.0))
     assert found == pytest.approx(scale)
     np.testing.assert_allclose(
-        [e.time for e in led.key_events], scale * np.array(MOMENTS) + delay, atol=1e-9
+        [e.time for e in led.key_events], scale * np.array(MOMENTS) + delay, atol=1e-6
     )
     for t in (0.0, 0.7, 1.3, 2.4):
         here, there = motion.sample(t), led.sample(scale * t + delay)
