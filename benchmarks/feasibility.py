@@ -64,10 +64,8 @@ def run(rig: Rig, motion: Motion) -> tuple[Recording, dict[str, object]]:
     danced = dance_on(Link(port), rig, motion, port.clock)
     recording = danced.recording
     columns = {name: i for i, name in enumerate(_actuated(motion))}
-    slowed = {
-        joint: float(np.mean(recording.channels["slowed"][:, columns[joint]]))
-        for joint in rig.joints
-    }
+    held_back = np.asarray(recording.channels["slowed"], dtype=float)
+    slowed = {joint: float(np.mean(held_back[:, columns[joint]])) for joint in rig.joints}
     full = {
         joint: float(share)
         for joint, share in zip(rig.joints, plant.full / plant.ticks, strict=True)
