@@ -9,6 +9,7 @@ OUT ?= out/demo
 # was packed can be imported.
 WHEEL_VENV ?= $(or $(TMPDIR),/tmp)/enpointe-wheel$(subst /,-,$(CURDIR))
 ROOMS := enpointe notation models motion choreography controllers sim hardware studio
+SCRIPTS := tests benchmarks docs examples
 
 .PHONY: help setup demo test lint types imports wheel wheel-venv wheel-tools bench lock floors clean FORCE
 
@@ -16,7 +17,7 @@ help:
 	@echo "make demo     dance the third port de bras, happily, and say where the report is"
 	@echo "make test     run the whole suite"
 	@echo "make lint     style and formatting"
-	@echo "make types    mypy, strict, on the built wheel"
+	@echo "make types    mypy, strict, on the built wheel, and on the tests and scripts against it"
 	@echo "make imports  the direction of imports between the rooms, on the built wheel"
 	@echo "make wheel    build dist/enpointe-*.whl"
 	@echo "make bench    run every script in benchmarks/"
@@ -69,8 +70,14 @@ wheel-tools: wheel-venv
 	$(WHEEL_VENV)/bin/python -m pip install --quiet --constraint $(WHEEL_VENV)/pins.txt \
 		"$$(ls dist/*.whl)[dev,video,cluster,ros]"
 
+# Links to the scripts, because from the checkout they would import its own folder enpointe/.
 types: wheel-tools
 	cd $(WHEEL_VENV) && bin/mypy --config-file $(CURDIR)/pyproject.toml -p enpointe
+	rm -rf $(WHEEL_VENV)/scripts
+	mkdir $(WHEEL_VENV)/scripts
+	ln -s $(addprefix $(CURDIR)/,$(SCRIPTS)) $(WHEEL_VENV)/scripts
+	cd $(WHEEL_VENV)/scripts && MYPYPATH=.:benchmarks:docs ../bin/mypy --explicit-package-bases \
+		--cache-dir ../.mypy_cache --config-file $(CURDIR)/pyproject.toml $(SCRIPTS)
 
 imports: wheel-tools
 	cd $(WHEEL_VENV) && bin/lint-imports --no-cache --config $(CURDIR)/pyproject.toml

@@ -8,7 +8,7 @@ import numpy as np
 
 from enpointe.models import PoseTarget
 from enpointe.models.anatomy import side_sign
-from enpointe.models.leg_target import InAir, OnPointe, Standing, ToeOnLeg
+from enpointe.models.leg_target import InAir, OnPointe, Standing, ToeOnFloor, ToeOnLeg
 from enpointe.models.rules.legs import TOE_THICKNESS
 from enpointe.models.seed import differential_ik
 from enpointe.notation import Side
@@ -22,11 +22,11 @@ def distance_left(configuration: mink.Configuration, target: PoseTarget) -> floa
     """How far the feet and wrists are from their places, the farthest of them, m."""
     data = configuration.data
     torso = data.body("torso")
-    errors = []
+    errors: list[float] = []
     for side in Side:
         wrist = data.site(f"{side}_wrist").xpos
         local = torso.xmat.reshape(3, 3).T @ (wrist - torso.xpos)
-        errors.append(np.linalg.norm(local - target.arms[side].wrist))
+        errors.append(float(np.linalg.norm(local - target.arms[side].wrist)))
         errors.append(foot_left(configuration, target, side))
     return float(max(errors))
 
@@ -50,6 +50,7 @@ def foot_left(configuration: mink.Configuration, target: PoseTarget, side: Side)
         outward = side_sign(side)
         ahead, aside, up = leg.offset
         return float(np.linalg.norm(gap - [ahead, outward * aside, up]))
+    assert isinstance(leg, ToeOnFloor)
     place = target.upright.T @ (tip - data.body("pelvis").xpos)
     return float(np.hypot(tip[2] - TOE_THICKNESS, np.dot(leg.across, place[:2])))
 

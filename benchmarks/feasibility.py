@@ -10,7 +10,6 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 
@@ -26,10 +25,8 @@ from enpointe.motion.joint_timing import TimingKept, timing_kept
 from enpointe.motion.puppeteering import Puppeteered, puppeteer
 from enpointe.motion.slowing import slowed
 from enpointe.puppet_stage import dance_on_stage
-from enpointe.report.bodies import write_bodies
-from enpointe.report.feasibility import write_feasibility
+from enpointe.rig_motion import body_of
 from enpointe.servo_loop import dance_on
-from enpointe.servoing import body_of
 from enpointe.sim.stand_plant import StandPlant
 
 FULL = 0.999
@@ -67,10 +64,8 @@ def run(rig: Rig, motion: Motion) -> tuple[Recording, dict[str, object]]:
     danced = dance_on(Link(port), rig, motion, port.clock)
     recording = danced.recording
     columns = {name: i for i, name in enumerate(_actuated(motion))}
-    slowed = {
-        joint: float(np.mean(recording.channels["slowed"][:, columns[joint]]))
-        for joint in rig.joints
-    }
+    held_back = np.asarray(recording.channels["slowed"], dtype=float)
+    slowed = {joint: float(np.mean(held_back[:, columns[joint]])) for joint in rig.joints}
     full = {
         joint: float(share)
         for joint, share in zip(rig.joints, plant.full / plant.ticks, strict=True)
@@ -135,7 +130,6 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--score", default="grand-battement")
     parser.add_argument("--rig", default="op3")
-    parser.add_argument("--out", type=Path, default=None, help="for the pages")
     parser.add_argument("--json", action="store_true")
     asked = parser.parse_args()
     rig = load_rig(asked.rig)
@@ -150,7 +144,6 @@ def main() -> None:
         "on_a_stand": told(hung),
         "as_written": run(rig, made.motion)[1],
     }
-    timing = None
     scale = hung.time_scale or hung.assessment.servo_scale
     if scale is not None:
         slow = slowed(made.motion, scale)
@@ -158,19 +151,8 @@ def main() -> None:
         moving = [joint for joint in rig.joints if np.ptp(_angles(made.motion, joint)) > 0.3]
         timing = timing_kept(slow, recording.as_motion(), moving)
         figures |= {"in_the_time_that_is_enough": in_time, "effort": effort(timing)}
-        if asked.out is not None:
-            write_bodies(
-                {
-                    "dancer": slowed(dance.motion, scale),
-                    rig.name: slow,
-                    "its servos": recording.as_motion(),
-                },
-                asked.out,
-            )
     if floor.time_scale is not None:
         figures["on_its_feet_in_time"] = free(rig, made, floor.time_scale)
-    if asked.out is not None:
-        write_feasibility(hung, asked.out, timing=timing)
     if asked.json:
         print(json.dumps(figures))
         return

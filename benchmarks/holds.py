@@ -96,7 +96,7 @@ def held(solver: KeyPoseSolver, pose: str, rise: str, seconds: float, controller
     figures = measure(recording)
     hull = balance.support(
         recording.channels["sole_point"][-1],
-        recording.channels["sole_force"][-1],  # type: ignore[arg-type]
+        recording.channels["sole_force"][-1],
     )
     margin = figures.support_margin_min
     return Held(

@@ -28,6 +28,7 @@ from importlib.metadata import version
 from pathlib import Path
 from statistics import median
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 from _mink_alone import steps_until_near
@@ -223,7 +224,7 @@ def report(repeats: int, sources: str) -> dict[str, object]:
     steps = [steps for _, steps in reached]
 
     def ratio(other: str) -> float:
-        pairs = [
+        pairs: list[float] = [
             whole / part
             for pose in poses
             for whole, part in zip(pose.whole, getattr(pose, other), strict=False)
@@ -270,7 +271,7 @@ def report(repeats: int, sources: str) -> dict[str, object]:
     }
 
 
-def table(found: dict) -> str:
+def table(found: dict[str, Any]) -> str:
     """The report for people, in plain text."""
     steps = found["mink_steps_until_near"]
     rows = [

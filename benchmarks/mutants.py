@@ -28,6 +28,7 @@ import warnings
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import FrameType
@@ -165,7 +166,7 @@ def originals(folder: Path) -> dict[str, tuple[str, Reader, list[bytes]]]:
         ("NPZ", ".npz", load_motion),
     ):
         raw = (folder / f"small{suffix}").read_bytes()
-        found[name] = suffix, lambda path, own=own: own(path, model), [raw]
+        found[name] = suffix, partial(own, model=model), [raw]
     return found
 
 

@@ -90,7 +90,8 @@ def opening(name: str, seconds: float, whole_body: bool) -> Motion:
         motion, _ = reference(motion, "wholebody")
     first = motion.time <= seconds
     parts = (motion.time, motion.qpos, motion.qvel, motion.qacc)
-    return Motion(motion.model, *(part[first] for part in parts), name=name)
+    time, qpos, qvel, qacc = (part[first] for part in parts)
+    return Motion(motion.model, time, qpos, qvel, qacc, name=name)
 
 
 def bare(body: Noting, motion: Motion) -> tuple[float, float]:

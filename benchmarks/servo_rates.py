@@ -27,7 +27,8 @@ from enpointe.errors import EnpointeError
 from enpointe.hardware.rig_file import Rig, load_rig
 from enpointe.motion import Motion
 from enpointe.motion.npz import save_motion
-from enpointe.servoing import EMULATED, body_of, servo
+from enpointe.rig_motion import body_of
+from enpointe.servoing import EMULATED, servo
 
 CASES = ((1_000_000, 100.0), (2_000_000, 125.0), (4_000_000, 200.0))
 """bit/s and Hz."""

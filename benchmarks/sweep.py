@@ -37,7 +37,10 @@ def local_cluster() -> Iterator[str | None]:
     except ImportError:
         yield None
         return
-    with LocalCluster(n_workers=WORKERS, threads_per_worker=1, dashboard_address=":0") as cluster:
+    cluster = LocalCluster(  # type: ignore[no-untyped-call]
+        n_workers=WORKERS, threads_per_worker=1, dashboard_address=":0"
+    )
+    with cluster:
         yield cluster.scheduler_address
 
 

@@ -43,6 +43,7 @@ mpl.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import mujoco  # noqa: E402
 from matplotlib.axes import Axes  # noqa: E402
+from matplotlib.figure import Figure  # noqa: E402
 from matplotlib.patches import PathPatch  # noqa: E402
 from matplotlib.path import Path as Outline  # noqa: E402
 from matplotlib.transforms import Affine2D  # noqa: E402
@@ -113,7 +114,7 @@ def faded(picture: Image.Image, opacity: float) -> Image.Image:
     return out
 
 
-def save(figure: plt.Figure, name: str) -> None:
+def save(figure: Figure, name: str) -> None:
     """As a PNG of few colours."""
     buffer = io.BytesIO()
     figure.savefig(buffer, format="png", dpi=100, facecolor=PAPER)
@@ -127,7 +128,7 @@ def save(figure: plt.Figure, name: str) -> None:
     print(f"{path.name}: {picture.width} x {picture.height}, {size // 1000} kB")
 
 
-def canvas(width: int, height: int) -> tuple[plt.Figure, Axes]:
+def canvas(width: int, height: int) -> tuple[Figure, Axes]:
     """A figure with one axes whose unit is the pixel, y down."""
     figure = plt.figure(figsize=(width / 100, height / 100), facecolor=PAPER)
     axes = figure.add_axes((0, 0, 1, 1))
@@ -179,7 +180,7 @@ def draw_frame(
     count = texts["count"]
     px, py = placed.transform((middle, float(count.attrib["y"])))
     size = float(count.attrib["font-size"]) * scale * 0.72
-    axes.text(px, py, count.text, family="DejaVu Serif", size=size, ha="center")
+    axes.text(px, py, count.text or "", family="DejaVu Serif", size=size, ha="center")
 
 
 def draw_stave(axes: Axes, columns: list[float], y: float, scale: float, score: Score) -> None:
@@ -187,7 +188,7 @@ def draw_stave(axes: Axes, columns: list[float], y: float, scale: float, score: 
     svg = ElementTree.fromstring(stave_svg(score))
     groups = {g.get("id"): g for g in svg.iter(f"{_SVG}g") if g.get("class") == "frame"}
     lines = [p for p in svg.iter(f"{_SVG}path") if p.get("class") == "stave-line"]
-    top = float(outline(lines[0].attrib["d"]).vertices[0][1])
+    top = float(np.asarray(outline(lines[0].attrib["d"]).vertices)[0, 1])
     pitch = columns[1] - columns[0]
     left, right = columns[0] - 0.526 * pitch, columns[-1] + 0.491 * pitch
     for line in range(5):
@@ -261,7 +262,7 @@ def dance() -> None:
 
 
 def _plots(
-    figure: plt.Figure,
+    figure: Figure,
     page: Axes,
     danced: enpointe.Performance,
     times: NDArray[np.float64],
@@ -301,7 +302,7 @@ def _plots(
     panels[1].plot(time[inside], forces[:, 1], color=RIGHT, linewidth=1.4)
     panels[1].axhline(weight, color=SOFT, linewidth=0.7, linestyle=(0, (1, 2)))
     panels[1].set_ylim(0, 1.28 * weight)
-    fastest = max(float(line.get_ydata().max()) for line in panels[0].lines[5:])
+    fastest = max(float(np.max(line.get_ydata())) for line in panels[0].lines[5:])
     page.text(28, 602, "speed of the wrists", size=8.5, color=SOFT)
     page.text(width - 28, 602, f"at most {fastest:.1f} m/s", size=8.5, color=SOFT, ha="right")
     page.text(28, 710, "floor under the feet", size=8.5, color=SOFT)

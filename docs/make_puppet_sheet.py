@@ -57,7 +57,8 @@ def on_body(model: mujoco.MjModel, dancer: mujoco.MjModel, pose: Array) -> Array
     """A body in a dancer's pose."""
     time = np.arange(0.0, HELD, 0.01)
     held = Motion.from_qpos(dancer, time, np.tile(pose, (len(time), 1)))
-    return puppeteer(held, model).motion.qpos[-1]
+    found: Array = puppeteer(held, model).motion.qpos[-1]
+    return found
 
 
 def row(model: mujoco.MjModel, poses: dict[str, Array], size: float) -> Image.Image:

@@ -146,11 +146,11 @@ def tempos() -> str:
 
 
 def stances() -> str:
-    says = {**dict.fromkeys(FLOOR, "the foot"), **dict.fromkeys(BENDS, "the knee")}
-    words = {**FLOOR, **BENDS}
+    words = [(also, "the foot") for also in FLOOR.values()]
+    words += [(also, "the knee") for also in BENDS.values()]
     return table(
         ("word", "also", "says of"),
-        ((also[0], ", ".join(also[1:]), says[key]) for key, also in words.items()),
+        ((also[0], ", ".join(also[1:]), of) for also, of in words),
     )
 
 

@@ -11,7 +11,7 @@ from collections import defaultdict
 from pathlib import Path
 
 from enpointe.errors import FormatError
-from enpointe.motion.formats import SkeletonMotion, formats, read
+from enpointe.motion.formats import MarkerMotion, SkeletonMotion, formats, read
 from enpointe.motion.formats.content import Content
 from enpointe.motion.formats.registry import sniffed
 
@@ -48,7 +48,7 @@ def _size(content: Content) -> tuple[int, int]:
     motion = content.motion
     if isinstance(motion, SkeletonMotion):
         return motion.frames, len(motion.skeleton.joints)
-    return (motion.frames, len(motion.names)) if hasattr(motion, "names") else (0, 0)
+    return (motion.frames, len(motion.names)) if isinstance(motion, MarkerMotion) else (0, 0)
 
 
 def _range(values: list[int]) -> str:

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from enpointe.checking import check as check
     from enpointe.comparing import Comparison as Comparison
     from enpointe.comparing import compare as compare
+    from enpointe.comparing_bodies import BodyComparison as BodyComparison
+    from enpointe.comparing_bodies import compare_bodies as compare_bodies
     from enpointe.comparing_file import FileComparison as FileComparison
     from enpointe.comparing_file import compare_file as compare_file
     from enpointe.converting import Conversion as Conversion
@@ -43,6 +45,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 _HOMES = {
+    "BodyComparison": "enpointe.comparing_bodies",
     "Check": "enpointe.checking",
     "Comparison": "enpointe.comparing",
     "Conversion": "enpointe.converting",
@@ -55,6 +58,7 @@ _HOMES = {
     "Poses": "enpointe.posing",
     "check": "enpointe.checking",
     "compare": "enpointe.comparing",
+    "compare_bodies": "enpointe.comparing_bodies",
     "compare_file": "enpointe.comparing_file",
     "convert": "enpointe.converting",
     "diagnose": "enpointe.doctor",
@@ -71,6 +75,7 @@ _HOMES = {
 }
 
 __all__ = [
+    "BodyComparison",
     "Check",
     "Comparison",
     "Conversion",
@@ -85,6 +90,7 @@ __all__ = [
     "__version__",
     "check",
     "compare",
+    "compare_bodies",
     "compare_file",
     "convert",
     "diagnose",

@@ -11,7 +11,7 @@ from typing import Annotated
 import typer
 
 import enpointe
-from enpointe.captured import is_motion_file
+from enpointe.compare_verb import compare_verb
 from enpointe.console import rows
 from enpointe.errors import EnpointeError
 from enpointe.options import (
@@ -23,14 +23,12 @@ from enpointe.options import (
     ConversionOptions,
     DancerOptions,
     Effort,
-    FileOptions,
     OutputOptions,
     Score,
     SeededOutputOptions,
     SpeechOptions,
     StyledDancerOptions,
     Tempo,
-    Video,
     find_metre,
     unbundled,
 )
@@ -46,58 +44,9 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
+app.add_typer(compare_verb)
 app.add_typer(perform_verb)
 app.add_typer(servo_verbs)
-
-
-@app.command()
-@unbundled
-def compare(
-    source: Annotated[
-        str,
-        typer.Argument(
-            help="A shipped score's name, a .bmn file, or a motion file of any format that convert"
-            " reads."
-        ),
-    ],
-    *,
-    effort: Effort = None,
-    tempo: Tempo = None,
-    file: FileOptions,
-    dancer: StyledDancerOptions,
-    video: Video = True,
-    output: OutputOptions,
-) -> int:
-    """Side by side: a score by slerp, by expression and by physics, or a file and its dance."""
-    console = output.console()
-    comparison: enpointe.Comparison | enpointe.FileComparison
-    with console.progress() as progress:
-        if is_motion_file(source):
-            file.refuse_for_scores(source, effort=effort, tempo=tempo)
-            comparison = enpointe.compare_file(
-                source,
-                span=file.span,
-                speed=file.rate,
-                dancer=dancer.anthropometry(),
-                mapping=file.mapping,
-                skeleton=file.skeleton,
-                progress=progress,
-            )
-        else:
-            file.refuse(source)
-            comparison = enpointe.compare(
-                enpointe.load_score(source),
-                effort=effort,
-                tempo=tempo,
-                style=dancer.style(),
-                dancer=dancer.anthropometry(),
-                progress=progress,
-            )
-        folder = output.folder(f"{Path(source).stem}-compared")
-        files = enpointe.write_report(comparison, folder, video=video, progress=progress)
-    console.warn(files.warning)
-    console.show(comparison.summary(), files, folder)
-    return DONE if comparison.completed else NO
 
 
 @app.command()

@@ -8,6 +8,8 @@ from __future__ import annotations
 from typing import TypedDict
 
 __all__ = [
+    "BodyComparisonFigures",
+    "BodyFigures",
     "CheatFigures",
     "ComparisonFigures",
     "DifferenceFigures",
@@ -22,6 +24,7 @@ __all__ = [
     "PhysicalFigures",
     "PoseFigures",
     "PosesFigures",
+    "ReachFigures",
     "RuleFigures",
     "RuleKeptFigures",
     "ServoFigures",
@@ -150,6 +153,33 @@ class FileComparisonFigures(TypedDict):
 
     variants: dict[str, FilePerformanceFigures]
     differences: list[DifferenceFigures]
+
+
+class BodyFigures(TypedDict):
+    """One body of several that dance the same."""
+
+    duration: float
+    logistic: FitFigures | None
+
+
+class ReachFigures(TypedDict):
+    """How far apart the gestures of two bodies are."""
+
+    between: list[str]
+    reach_rms: float | None
+    joint_rms_deg: float | None
+
+
+class BodyComparisonFigures(TypedDict):
+    """One dance on the dancer, as a rig was asked for it, and as it danced it."""
+
+    title: str
+    rig: str
+    completed: bool
+    time_scale: float | None
+    bodies: dict[str, BodyFigures]
+    differences: list[ReachFigures]
+    servos: ServoFigures | None
 
 
 class RuleFigures(TypedDict):

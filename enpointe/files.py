@@ -16,7 +16,7 @@ from uuid import uuid4
 
 from enpointe.errors import EnpointeError
 
-__all__ = ["atomic_path", "write_bytes", "write_text"]
+__all__ = ["atomic_path", "refuse_unwritable", "write_bytes", "write_text"]
 
 _FULL = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
 _FORBIDDEN = frozenset({errno.EACCES, errno.EPERM, errno.EROFS})
@@ -95,6 +95,31 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
     finally:
         with suppress(OSError):
             beside.unlink(missing_ok=True)
+
+
+class _LeftUnwrittenError(Exception):
+    """Raised to leave a file unwritten."""
+
+
+def refuse_unwritable(path: str | Path) -> None:
+    """Make sure of a file before work that can't be done again; nothing is left behind.
+
+    Args:
+        path: Where the file is to be.
+
+    Raises:
+        EnpointeError: It can't be written there.
+    """
+    path = Path(path)
+    made = [folder for folder in path.parents if not folder.exists()]
+    try:
+        with suppress(_LeftUnwrittenError), atomic_path(path) as beside:
+            beside.touch()
+            raise _LeftUnwrittenError
+    finally:
+        for folder in made:
+            with suppress(OSError):
+                folder.rmdir()
 
 
 def _refuse_what_is_not_a_file(path: Path, target: Path) -> None:

@@ -30,6 +30,7 @@ __all__ = [
     "Json",
     "OutputOptions",
     "Quiet",
+    "RigOptions",
     "Score",
     "Seed",
     "SeededOutputOptions",
@@ -176,8 +177,8 @@ class FileOptions(CaptureOptions):
         """How much faster than the file."""
         return 1.0 if self.speed is None else self.speed
 
-    def refuse(self, source: str) -> None:
-        """Refuse these options for a score.
+    def refuse(self, source: str, why: str = "is a score") -> None:
+        """Refuse these options for what is no motion file, or is not danced as one.
 
         Raises:
             EnpointeError: One is given.
@@ -186,7 +187,7 @@ class FileOptions(CaptureOptions):
         given["skeleton"] = self.skeleton
         for name, value in given.items():
             if value is not None:
-                raise EnpointeError(f"{source} is a score: --{name} is for motion files")
+                raise EnpointeError(f"{source} {why}: --{name} is for motion files")
 
     @staticmethod
     def refuse_for_scores(source: str, **given: object) -> None:
@@ -200,6 +201,60 @@ class FileOptions(CaptureOptions):
                 raise EnpointeError(
                     f"{source} is a motion file: --{name} is for scores; use --speed or --span"
                 )
+
+
+@dataclass(frozen=True)
+class RigOptions:
+    """Which rig of servos is set beside the dancer, and where it dances."""
+
+    rig: Annotated[
+        str | None,
+        typer.Option(
+            help="Set a rig of servos beside the dancer: puppet, op3, or a TOML file of yours."
+        ),
+    ] = None
+    port: Annotated[
+        str | None,
+        typer.Option(help="Of the rig, as for servo; simulated if left out."),
+    ] = None
+    stand: Annotated[
+        bool | None,
+        typer.Option(
+            "--stand/--free", help="The simulated rig hangs on a stand, or must balance; it hangs."
+        ),
+    ] = None
+    as_written: Annotated[
+        bool, typer.Option("--as-written", help="Don't slow down what servos can't follow.")
+    ] = False
+    recording: Annotated[
+        Path | None,
+        typer.Option(help="What the rig did before (recording.npz of servo); nothing is danced."),
+    ] = None
+
+    @property
+    def where(self) -> str:
+        """The rig's port."""
+        from enpointe.servoing import SIMULATED
+
+        return SIMULATED if self.port is None else self.port
+
+    def refuse_without(self) -> None:
+        """Refuse what is for a rig where there is none, and for a dance where none is danced.
+
+        Raises:
+            EnpointeError: Such an option is given.
+        """
+        danced = {
+            "--port": self.port is not None,
+            "--stand and --free": self.stand is not None,
+            "--as-written": self.as_written,
+        }
+        for name, given in {**danced, "--recording": self.recording is not None}.items():
+            if given and self.rig is None:
+                raise EnpointeError(f"{name} is for a rig: name it with --rig")
+        for name, given in danced.items():
+            if given and self.recording is not None:
+                raise EnpointeError(f"{name} is for a dance, and --recording is one already danced")
 
 
 @dataclass(frozen=True)

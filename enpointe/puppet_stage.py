@@ -68,7 +68,13 @@ class StagedDance:
 
         time = np.asarray(self.stage["time"], dtype=float)
         qpos = np.asarray(self.stage["qpos"], dtype=float)
-        return Motion.from_qpos(self.motion.model, time - time[0], qpos, name=self.motion.name)
+        return Motion.from_qpos(
+            self.motion.model,
+            time - time[0],
+            qpos,
+            events=[event for event in self.motion.events if event.time <= time[-1] - time[0]],
+            name=f"{self.motion.name}, performed",
+        )
 
 
 def dance_on_stage(

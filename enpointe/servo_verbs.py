@@ -10,7 +10,17 @@ import typer
 
 from enpointe.console import Console, rows
 from enpointe.errors import RigError
-from enpointe.options import Effort, Json, OutputOptions, Quiet, SpeechOptions, Tempo, unbundled
+from enpointe.files import refuse_unwritable
+from enpointe.options import (
+    Effort,
+    Json,
+    OutputOptions,
+    Quiet,
+    SpeechOptions,
+    StyledDancerOptions,
+    Tempo,
+    unbundled,
+)
 
 if TYPE_CHECKING:
     from enpointe.feasibility import Feasibility
@@ -28,8 +38,8 @@ def servo(
     source: Annotated[
         str,
         typer.Argument(
-            help="A shipped score's name, a .bmn file, or a motion or recording (.npz) of the"
-            " dancer or of the rig's own body."
+            help="A shipped score's name, a .bmn file, a motion or recording (.npz) of the dancer"
+            " or of the rig's own body, or a motion file of any format that convert reads."
         ),
     ],
     *,
@@ -50,7 +60,7 @@ def servo(
         bool, typer.Option("--stand/--free", help="The puppet hangs on a stand, or must balance.")
     ] = True,
     dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Say whether the rig can dance it, and do no more.")
+        bool, typer.Option("--dry-run", help="Say whether the rig can dance it, and dance nothing.")
     ] = False,
     as_written: Annotated[
         bool, typer.Option("--as-written", help="Don't slow down what servos can't follow.")
@@ -62,19 +72,32 @@ def servo(
         float,
         typer.Option(help="Degrees of play in the gears of a simulated rig; XM and XH have 0.25."),
     ] = 0.0,
+    dancer: StyledDancerOptions,
     output: OutputOptions,
 ) -> int:
     """Dance on a rig of Dynamixel servos. Ctrl-C parks it; a second one lets go at once."""
     from enpointe.hardware.emulator import load_faults
     from enpointe.hardware.rig_file import load_rig
+    from enpointe.report.feasibility import write_feasibility
     from enpointe.servoing import servo as dance
     from enpointe.servoing import would
 
     console = output.console()
     chosen = load_rig(rig).at(baud, rate)
+    folder = output.folder(f"{Path(source).stem}-{chosen.name}")
     script = () if faults is None else load_faults(faults)
     if dry_run:
-        return _say(console, would(source, chosen, effort=effort, tempo=tempo, stand=stand), output)
+        found = would(
+            source,
+            chosen,
+            effort=effort,
+            tempo=tempo,
+            style=dancer.style(),
+            dancer=dancer.anthropometry(),
+            stand=stand,
+        )
+        return _say(console, found, write_feasibility(found, folder), output)
+    refuse_unwritable(folder / "recording.npz")
     with console.progress() as progress:
         danced = dance(
             source,
@@ -82,6 +105,8 @@ def servo(
             port=port,
             effort=effort,
             tempo=tempo,
+            style=dancer.style(),
+            dancer=dancer.anthropometry(),
             stand=stand,
             as_written=as_written,
             faults=script,
@@ -89,18 +114,24 @@ def servo(
             backlash=backlash,
             progress=progress,
         )
-    folder = output.folder(f"{Path(source).stem}-{chosen.name}")
-    console.show(danced.summary(), danced.save(folder), folder)
+        files = danced.save(folder)
+        if danced.feasibility is not None:
+            files |= write_feasibility(danced.feasibility, folder, timing=danced.timing)
+    console.show(danced.summary(), files, folder)
     for fault in danced.statistics.faults:
         console.warn(fault)
     return 0 if danced.completed else 1
 
 
-def _say(console: Console, found: Feasibility, output: OutputOptions) -> int:
+def _say(
+    console: Console, found: Feasibility, files: dict[str, Path], output: OutputOptions
+) -> int:
     if output.json:
-        console.print_json(found.summary())
+        paths = {name: str(path) for name, path in files.items()}
+        console.print_json({**found.summary(), "files": paths})
     else:
         console.print(rows(found.lines()))
+        console.print(f"report: {files['feasibility']}")
     return 0 if found.feasible else 1
 
 

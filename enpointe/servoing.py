@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,16 +16,16 @@ from enpointe.errors import RigError
 from enpointe.feasibility import Feasibility, feasible
 from enpointe.figures import ServoFigures
 from enpointe.preparing import Progress, silent
+from enpointe.rig_motion import RigMotion, rig_motion
 
 if TYPE_CHECKING:
-    import mujoco
-
     from enpointe.controllers import Recording
     from enpointe.hardware.dynamixel import Statistics
     from enpointe.hardware.emulator import Fault, FaultRun
     from enpointe.hardware.rig_file import Rig
+    from enpointe.models import Anthropometry, Style
     from enpointe.motion import Motion
-    from enpointe.motion.contact_schedule import ContactSchedule
+    from enpointe.motion.joint_timing import TimingKept
     from enpointe.puppet_stage import StagedDance
     from enpointe.servo_loop import Danced
 
@@ -33,10 +33,7 @@ __all__ = [
     "EMULATED",
     "MEMORY",
     "SIMULATED",
-    "RigMotion",
     "ServoPerformance",
-    "body_of",
-    "rig_motion",
     "servo",
     "would",
 ]
@@ -69,6 +66,7 @@ class ServoPerformance:
         staged: What was seen of a simulated body on its own feet; None of any other.
         stage: On what it danced, in words.
         opened: m, see `RigMotion`.
+        dancer: The dancer's movement as written; None if it was of the rig's body already.
     """
 
     rig: Rig
@@ -80,6 +78,7 @@ class ServoPerformance:
     staged: StagedDance | None = None
     stage: str = _REAL
     opened: float | None = None
+    dancer: Motion | None = None
 
     @property
     def completed(self) -> bool:
@@ -102,6 +101,18 @@ class ServoPerformance:
         error = self.recording.qpos[:, joints] - asked
         error[~self.recording.valid] = np.nan
         return np.asarray(error[1:])
+
+    @cached_property
+    def danced(self) -> Motion:
+        """What the servos did; of a simulated body on its own feet what was seen of it."""
+        return self.recording.as_motion() if self.staged is None else self.staged.seen()
+
+    @cached_property
+    def timing(self) -> TimingKept:
+        """What of the effort came out."""
+        from enpointe.motion.joint_timing import timing_kept
+
+        return timing_kept(self.motion, self.danced, self.rig.joints)
 
     def tracking_by_joint(self) -> dict[str, float]:
         """Root mean square of the tracking error of each joint, degrees."""
@@ -170,6 +181,8 @@ def servo(
     port: str = EMULATED,
     effort: str | None = None,
     tempo: float | None = None,
+    style: Style | None = None,
+    dancer: Anthropometry | None = None,
     stand: bool = True,
     as_written: bool = False,
     faults: Sequence[Fault] = (),
@@ -180,13 +193,15 @@ def servo(
     """Dance on a rig of servos, or on one that is emulated.
 
     Args:
-        source: A shipped score's name, a `.bmn` file, or a motion or a recording (`.npz`) of the
-            dancer or of the rig's own body.
+        source: A shipped score's name, a `.bmn` file, a motion or a recording (`.npz`) of the
+            dancer or of the rig's own body, or a motion file of any other format.
         rig: A shipped rig's name, a TOML file, or a rig.
         port: A serial port; "emulated" or "memory" for a bus that is not there, "simulated" for one
             with the rig's body behind it, on a stand or on its own feet as `stand` says.
         effort: See `perform`.
         tempo: See `perform`.
+        style: See `perform`.
+        dancer: See `perform`.
         stand: Whether the body hangs on a stand, and need not balance; see `feasible`.
         as_written: Dance it even if the servos can't follow, and no slower than it is written.
         faults: What goes wrong on an emulated bus.
@@ -216,7 +231,15 @@ def servo(
     if not 0.0 <= backlash < _MOST_PLAY:
         raise RigError(f"a backlash is 0 to {_MOST_PLAY:g} degrees, not {backlash:g}")
     play = math.radians(backlash)
-    made = rig_motion(source, chosen, effort=effort, tempo=tempo, progress=progress)
+    made = rig_motion(
+        source,
+        chosen,
+        effort=effort,
+        tempo=tempo,
+        style=style,
+        dancer=dancer,
+        progress=progress,
+    )
     found = None
     if not as_written:
         found = feasible(
@@ -228,7 +251,9 @@ def servo(
     danced = _danced(chosen, made.motion, port, faults, seed, play, progress)
     stage = {EMULATED: _NOBODY, MEMORY: _NOBODY, SIMULATED: _STAND + _said(play)}.get(port, _REAL)
     done = danced.recording, danced.statistics
-    return ServoPerformance(chosen, port, made.motion, *done, found, None, stage, made.opened)
+    return ServoPerformance(
+        chosen, port, made.motion, *done, found, None, stage, made.opened, made.dancer
+    )
 
 
 def _said(play: float) -> str:
@@ -279,7 +304,9 @@ def _on_its_feet(
     )
     done = staged.recording, staged.statistics
     stage = _FEET + _said(play)
-    return ServoPerformance(rig, SIMULATED, staged.motion, *done, found, staged, stage, made.opened)
+    return ServoPerformance(
+        rig, SIMULATED, staged.motion, *done, found, staged, stage, made.opened, made.dancer
+    )
 
 
 def would(
@@ -288,11 +315,15 @@ def would(
     *,
     effort: str | None = None,
     tempo: float | None = None,
+    style: Style | None = None,
+    dancer: Anthropometry | None = None,
     stand: bool = True,
     progress: Progress = silent,
 ) -> Feasibility:
     """Whether a rig can dance something, and nothing is danced; see `servo`."""
-    made = rig_motion(source, rig, effort=effort, tempo=tempo, progress=progress)
+    made = rig_motion(
+        source, rig, effort=effort, tempo=tempo, style=style, dancer=dancer, progress=progress
+    )
     return feasible(made.motion, rig, contacts=made.contacts, stand=stand, progress=progress)
 
 
@@ -313,76 +344,3 @@ def _in_memory(
     port = EmulatedPort(bus_of(description_of(rig), faults=faults), clock)
     port.setBaudRate(rig.baud)
     return dance_on(Link(port), rig, motion, clock, progress=progress)
-
-
-def body_of(rig: Rig) -> mujoco.MjModel:
-    """The model of a rig's body."""
-    from enpointe.models.puppet import op3_model, puppet_model
-
-    return puppet_model() if rig.body == "puppet" else op3_model()
-
-
-@dataclass(frozen=True)
-class RigMotion:
-    """A movement on the body of a rig.
-
-    Attributes:
-        motion: Of that body.
-        contacts: Which soles are to bear, and when; None if that is to be read from the motion.
-        opened: m, by how much positions of the feet are wider than the dancer's on its scale, at
-            most; None if it was of that body already.
-    """
-
-    motion: Motion
-    contacts: ContactSchedule | None = None
-    opened: float | None = None
-
-    def slowed(self, found: Feasibility) -> RigMotion:
-        """The same as the rig can dance it.
-
-        Raises:
-            MotionError: No time scale makes it feasible.
-        """
-        motion = found.slowed
-        if self.contacts is None or found.time_scale is None:
-            return RigMotion(motion)
-        return replace(self, motion=motion, contacts=self.contacts.slowed(found.time_scale))
-
-
-def rig_motion(
-    source: str | Path,
-    rig: Rig,
-    *,
-    effort: str | None = None,
-    tempo: float | None = None,
-    progress: Progress = silent,
-) -> RigMotion:
-    """Put a movement on the body of a rig.
-
-    Args:
-        source: See `servo`.
-        rig: Whose body.
-        effort: See `perform`.
-        tempo: See `perform`.
-        progress: Told how far it is.
-    """
-    from enpointe.performing import perform
-    from enpointe.stored import is_stored, load_own, load_stored
-
-    path, model = Path(source), body_of(rig)
-    if is_stored(path):
-        own = load_own(path, model)
-        if own is not None:
-            return RigMotion(own)
-        danced = load_stored(path)
-    else:
-        danced = perform(
-            source, effort=effort, tempo=tempo, controller="kinematic", progress=progress
-        ).motion
-    from enpointe.motion.puppeteering import puppeteer
-
-    def posed(done: int, total: int) -> None:
-        progress("puppet", done, total)
-
-    made = puppeteer(danced, model, progress=posed)
-    return RigMotion(made.motion, made.contacts, made.opened)

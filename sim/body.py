@@ -7,6 +7,7 @@ at every step that nobody else applied anything either.
 from __future__ import annotations
 
 import copy
+from typing import Self
 
 import mujoco
 import numpy as np
@@ -87,7 +88,7 @@ class SimulatedBody:
         self._valid = np.ones(self.model.nu, dtype=bool)
 
     @classmethod
-    def at_start_of(cls, motion: Motion, *, period: float = CONTROL_PERIOD) -> SimulatedBody:
+    def at_start_of(cls, motion: Motion, *, period: float = CONTROL_PERIOD) -> Self:
         """A body standing in a motion's first pose, at rest."""
         return cls(motion.model, motion.qpos[0], period=period)
 

@@ -1,134 +1,197 @@
-"""One dance on several bodies, side by side: the dancer, the puppet, and what its servos did."""
+"""One dance on several bodies, side by side: the dancer, what a rig was asked, what it danced."""
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from enpointe.files import write_bytes
-from enpointe.motion import Motion, fit_logistic, wrist_profiles
-from enpointe.preparing import Progress, silent
-from enpointe.report.blocks import Block, Cell, Film, Page, Row, Section, Table, data_uri
-from enpointe.report.films import FPS, FPS_SLOW, HEIGHT_SEVERAL, SMALLER, FilmFile
-from enpointe.report.page import render
-from enpointe.report.pictures import ASPECT, fitted_view
+from enpointe.comparing_bodies import DANCER, BodyComparison
+from enpointe.figures import BodyFigures, ServoFigures
+from enpointe.motion import Motion
+from enpointe.preparing import Progress
+from enpointe.report.blocks import (
+    Block,
+    Cell,
+    Chart,
+    Film,
+    Page,
+    Row,
+    Section,
+    Table,
+    data_uri,
+)
+from enpointe.report.effort_kept import effort_table
+from enpointe.report.facing import in_front_of, seen_from
+from enpointe.report.films import HALL, FilmFile, FilmSize
+from enpointe.report.pictures import fitted_view
+from enpointe.report.tracking import tracking_chart, worst_joints
 from enpointe.report.words import DASH
 from enpointe.sim.camera import View
-from enpointe.sim.render import gl_backend, open_painter
-from enpointe.sim.video import can_write_mp4, film, side_by_side, write_gif, write_mp4
+from enpointe.sim.render import open_painter
+from enpointe.sim.video import film, frame_samples, side_by_side
 
-__all__ = ["film_bodies", "write_bodies"]
+__all__ = ["draw_bodies"]
 
 _FITTED_POSES = 40
+_DRAWN = 6
+"""Joints of which there is a curve."""
 
 
-def write_bodies(
-    motions: Mapping[str, Motion], out: Path, *, video: bool = True, progress: Progress = silent
-) -> dict[str, Path]:
-    """Write `bodies.html`, and the film beside it; returns their paths by name.
-
-    Args:
-        motions: By caption; each of a body of its own, the first the one to compare with. What a
-            rig did is `Recording.as_motion()`.
-        out: The folder.
-        video: Whether to paint a film.
-        progress: Told how far it is.
-
-    Raises:
-        EnpointeError: A folder that can't be written to.
-    """
-    progress("film", 0, 1)
-    reel = film_bodies(motions) if video else None
-    progress("film", 1, 1)
-    title = next(iter(motions.values())).name
-    sections = [Section("figures", "What the wrists did", (_wrists(motions),))]
-    if same := _same_bodies(motions):
-        sections.append(Section("joints", "What was asked and what was done", same))
-    files = {}
-    if reel is not None:
+def draw_bodies(
+    shown: BodyComparison, video: bool, progress: Progress
+) -> tuple[dict[str, tuple[str, bytes]], Page, str | None]:
+    """The files beside the page by name, the page, and the warning about pictures."""
+    figures = shown.summary()
+    sections = [
+        Section("figures", "What the arms did", (*_arms(figures["bodies"]), _apart(shown))),
+        Section("effort", "What of the effort survives the servos", (effort_table(shown.timing),)),
+        Section("joints", "What was asked of each joint, and what it did", _joints(shown)),
+    ]
+    if figures["servos"] is not None:
+        sections.append(Section("bus", "Loop and bus", (_bus(figures["servos"]),)))
+    parts: dict[str, tuple[str, bytes]] = {}
+    warning = None
+    if video:
+        reel, warning = _film(shown, progress)
         caption = (
-            "At the same moments; each at the size of the picture. A rig does not feel where its "
-            "trunk is: it is shown with the trunk where it began."
+            f"At the same moments, each at the size of the picture. {seen_from(shown.asked)} What "
+            "hangs on a stand, or does not feel where its trunk is, is shown with the trunk where "
+            "it began."
         )
         block = Film(data_uri(reel.mime, reel.data), reel.mime, reel.size, "The bodies", caption)
         sections.insert(0, Section("film", "Side by side", (block,)))
-        files["video"] = write_bytes(out / reel.name, reel.data)
-    verdict = f"The same dance on {len(motions)} bodies: {', '.join(motions)}."
-    footer = "Wrists are measured in each body's own torso, so that its size does not count."
-    facts = tuple((name, f"{motion.duration:.2f} s") for name, motion in motions.items())
-    page = Page(title, verdict, None, facts, None, tuple(sections), footer)
-    return {"bodies": write_bytes(out / "bodies.html", render(page).encode("utf-8")), **files}
+        parts["video"] = (reel.name, reel.data)
+    footer = (
+        "Arms are measured from the shoulder, in each body's own torso and its own arm lengths, so "
+        "that its size does not count."
+    )
+    page = Page(
+        shown.asked.name,
+        _verdict(shown),
+        shown.completed,
+        _facts(shown),
+        warning,
+        tuple(sections),
+        footer,
+    )
+    return parts, page, warning
 
 
-def film_bodies(motions: Mapping[str, Motion]) -> FilmFile:
-    """Film bodies side by side, each from the audience and as large as the others."""
-    mp4, sketched = can_write_mp4(), gl_backend() is None
-    height = HEIGHT_SEVERAL if mp4 and not sketched else int(SMALLER * HEIGHT_SEVERAL)
-    width = round(ASPECT * height)
-    fps = FPS if mp4 and not sketched else FPS_SLOW
+def _verdict(shown: BodyComparison) -> str:
+    rig = shown.rig.name
+    if shown.fault is not None:
+        return f"{rig} stopped before the end: {shown.fault}."
+    rms = next(each.joint_rms_deg for each in shown.gestures if each.first != DANCER)
+    done = f"{rig} danced this to the end, its joints {rms:.2f}° from what was asked (rms)"
+    if shown.time_scale is None or abs(shown.time_scale - 1.0) < 5e-4:
+        return f"{done}, in the dancer's time." if shown.dancer is not None else f"{done}."
+    return (
+        f"{done}, in {shown.time_scale:.3f} times the dancer's time: she is shown as much slower."
+    )
+
+
+def _facts(shown: BodyComparison) -> tuple[tuple[str, str], ...]:
+    performance = shown.performance
+    stage = "a recording" if performance is None else performance.stage
+    return (
+        ("rig", f"{shown.rig.name}, {len(shown.rig.servos)} servos"),
+        ("on", stage),
+        ("danced", f"{shown.danced.duration:.2f} s of {shown.asked.duration:.2f} s"),
+    )
+
+
+def _film(shown: BodyComparison, progress: Progress) -> tuple[FilmFile, str | None]:
+    """Bodies side by side, each as large as the others."""
+    motions, front = shown.motions, in_front_of(shown.asked, HALL)
+    size = FilmSize.of([motion.duration for motion in motions.values()])
+    frames = sum(len(frame_samples(motion.time, size.fps)) for motion in motions.values())
+    painted = 0
+
+    def count(_done: int, _total: int) -> None:
+        nonlocal painted
+        painted += 1
+        progress("film", painted, frames)
+
     with ExitStack() as open_, TemporaryDirectory() as folder:
-        reels = []
+        reels, warning = [], None
         for motion in motions.values():
-            painter, _ = open_painter(motion.model, width, height)
+            painter, warning = open_painter(motion.model, size.width, size.height)
             open_.enter_context(painter)
-            reels.append(film(motion.time, motion.qpos, painter, _view(motion), fps))
+            view = _fitted(motion, front)
+            reels.append(film(motion.time, motion.qpos, painter, view, size.fps, progress=count))
         pictures = side_by_side(reels, list(motions))
-        first = next(pictures)
-        write = write_mp4 if mp4 else write_gif
-        name = "bodies.mp4" if mp4 else "bodies.gif"
-        data = write(Path(folder) / name, itertools.chain([first], pictures), fps).read_bytes()
-    return FilmFile(name, data, "video/mp4" if mp4 else "image/gif", first.size)
+        return size.write(Path(folder), pictures), warning
 
 
-def _view(motion: Motion) -> View:
+def _fitted(motion: Motion, view: View) -> View:
     some = np.unique(np.linspace(0, len(motion.time) - 1, _FITTED_POSES).astype(int))
-    return fitted_view(motion.model, list(motion.qpos[some]), View(elevation=-9.0))
+    return fitted_view(motion.model, list(motion.qpos[some]), view)
 
 
-def _wrists(motions: Mapping[str, Motion]) -> Table:
+def _arms(bodies: dict[str, BodyFigures]) -> tuple[Table, ...]:
     rows = []
-    for name, motion in motions.items():
-        fit = fit_logistic(wrist_profiles(motion)) if _has_wrists(motion) else None
-        numbers = (None, None, None) if fit is None else (fit.time, fit.weight, fit.rms)
+    for name, figures in bodies.items():
+        fit = figures["logistic"]
+        numbers = (None, None, None) if fit is None else (fit["b"], fit["x0"], fit["rms"])
         cells = tuple(
             Cell(DASH) if value is None else Cell(f"{value:.3f}", value) for value in numbers
         )
         rows.append(Row(name, cells))
+    if all(figures["logistic"] is None for figures in bodies.values()):
+        return ()
     heads = ("Body", "time, b", "weight, x0", "rms")
-    return Table(
-        "The logistic that fits their ways best (Neagle 2005, eq. 5.2)", heads, tuple(rows)
+    caption = "The logistic that fits the wrists' ways best (Neagle 2005, eq. 5.2)"
+    return (Table(caption, heads, tuple(rows)),)
+
+
+def _apart(shown: BodyComparison) -> Table:
+    rows = []
+    for each in shown.gestures:
+        reach, joints = each.reach_rms, each.joint_rms_deg
+        cells = (
+            Cell(DASH) if reach is None else Cell(f"{100 * reach:.1f} %", reach),
+            Cell(DASH) if joints is None else Cell(f"{joints:.2f}°", joints),
+        )
+        rows.append(Row(f"{each.first} and {each.second}", cells))
+    heads = ("Bodies", "wrists, of an arm's length", "joints")
+    return Table("How far apart they are at equal times, rms", heads, tuple(rows))
+
+
+def _joints(shown: BodyComparison) -> tuple[Block, ...]:
+    errors = worst_joints(shown)
+    rows = tuple(
+        Row(each.joint, (Cell(f"{each.rms:.2f}°", each.rms), Cell(f"{each.most:.2f}°", each.most)))
+        for each in errors
+    )
+    caption = f"{shown.rig.name} as danced beside as asked, at equal times; the worst at the top"
+    drawn = [each.joint for each in errors[:_DRAWN]]
+    curves = (
+        "The joints that were farthest from what was asked. Left their angles, blue asked and red "
+        "danced; right what lies between: while a joint moves, mostly its lag, and at rest its sag "
+        "under the weight."
+    )
+    return (
+        Chart(tracking_chart(shown.asked, shown.danced, drawn, "tracking"), curves),
+        Table(caption, ("Joint", "rms apart", "at the most"), rows),
     )
 
 
-def _has_wrists(motion: Motion) -> bool:
-    names = {motion.model.site(i).name for i in range(motion.model.nsite)}
-    bodies = {motion.model.body(i).name for i in range(motion.model.nbody)}
-    return {"left_wrist", "right_wrist"} <= names and "torso" in bodies
+def _bus(figures: ServoFigures) -> Table:
+    def row(what: str, text: str, value: float | None = None) -> Row:
+        return Row(what, (Cell(text, value),))
 
-
-def _same_bodies(motions: Mapping[str, Motion]) -> tuple[Block, ...]:
-    """Joint by joint, of every two that are of one body."""
-    tables = []
-    for (first, asked), (second, done) in itertools.combinations(motions.items(), 2):
-        if asked.model.nq != done.model.nq or asked.model.njnt != done.model.njnt:
-            continue
-        moments = asked.time[asked.time <= done.duration]
-        wanted = np.array([asked.sample(float(t))[0] for t in moments])
-        came = np.array([done.sample(float(t))[0] for t in moments])
-        rows = []
-        for joint in range(1, asked.model.njnt):
-            place = asked.model.jnt_qposadr[joint]
-            error = np.degrees(came[:, place] - wanted[:, place])
-            rms, most = float(np.sqrt(np.mean(error**2))), float(np.abs(error).max())
-            cells = (Cell(f"{rms:.2f}°", rms), Cell(f"{most:.2f}°", most))
-            rows.append((rms, Row(asked.model.joint(joint).name, cells)))
-        rows.sort(key=lambda row: -row[0])
-        caption = f"{second} beside {first}, at equal times"
-        heads = ("Joint", "rms apart", "at the most")
-        tables.append(Table(caption, heads, tuple(row for _, row in rows)))
-    return tuple(tables)
+    faults = figures["faults"]
+    rows = [
+        row("rate, achieved", f"{figures['achieved_hz']:.1f} Hz", figures["achieved_hz"]),
+        row("rate that the wires allow", f"{figures['bus_ceiling_hz']:.0f} Hz"),
+        row("deadlines missed", f"{figures['deadline_misses']}"),
+        row("answers lost", f"{100 * figures['frame_loss']:.2f} %", figures["frame_loss"]),
+        row("left", figures["ending"]),
+        row("faults", "; ".join(faults) if faults else "none"),
+    ]
+    if (off := figures["root_off_max"]) is not None:
+        rows.append(row("root off its place, at most", f"{1000 * off:.1f} mm", off))
+    return Table("As the loop and the bus saw it", ("", ""), tuple(rows), prose=True)

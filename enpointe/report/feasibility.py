@@ -9,9 +9,9 @@ from enpointe.files import write_bytes
 from enpointe.hardware.feasibility import Excess
 from enpointe.motion.joint_timing import TimingKept
 from enpointe.report.blocks import Block, Cell, Chart, Page, Paragraph, Row, Section, Table
+from enpointe.report.effort_kept import effort_table
 from enpointe.report.page import render
 from enpointe.report.servo_charts import limits_chart, torque_speed_chart
-from enpointe.report.words import DASH
 
 __all__ = ["feasibility_page", "write_feasibility"]
 
@@ -61,7 +61,7 @@ def feasibility_page(found: Feasibility, timing: TimingKept | None = None) -> Pa
         Section("heat", "Heat", (_heat(found),)),
     ]
     if timing is not None:
-        sections.append(Section("effort", "What of the effort survives", (_timing(timing),)))
+        sections.append(Section("effort", "What of the effort survives", (effort_table(timing),)))
     duration = assessment.demand.time[-1] - assessment.demand.time[0]
     facts = (
         ("rig", f"{rig.name}, {len(rig.servos)} servos"),
@@ -170,29 +170,3 @@ def _heat(found: Feasibility) -> Table:
     danced = "danced once" if assessment.repeats == 1 else f"danced {assessment.repeats} times"
     caption = f"After it was {danced} at × {scale:.2f}, from {warmth.room:.0f} °C"
     return Table(caption, ("Joint", "at the most", "shuts down at", "dances in a row"), rows)
-
-
-def _timing(timing: TimingKept) -> Table:
-    asked, done = timing.asked, timing.done
-
-    def row(what: str, before: str, after: str) -> Row:
-        return Row(what, (Cell(before), Cell(after)))
-
-    rows = [
-        row(
-            "time, gradient b of the logistic",
-            DASH if asked is None else f"{asked.time:.2f}",
-            DASH if done is None else f"{done.time:.2f}",
-        ),
-        row(
-            "weight, centroid x0",
-            DASH if asked is None else f"{asked.weight:.3f}",
-            DASH if done is None else f"{done.weight:.3f}",
-        ),
-        row("share of the way, rms apart", DASH, f"{100 * timing.distance_rms:.1f} %"),
-        row("speed profiles, correlation", DASH, f"{timing.speed_correlation:.3f}"),
-        row("greatest speed comes later by", DASH, f"{100 * timing.peak_shift:+.1f} % of the time"),
-        row("all comes later by", DASH, f"{1000 * timing.lag:.0f} ms"),
-    ]
-    caption = f"Of {timing.ways} ways of joints between key poses, the delay of all taken out"
-    return Table(caption, ("", "asked", "came out"), tuple(rows))

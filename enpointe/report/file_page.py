@@ -23,7 +23,8 @@ from enpointe.report.blocks import (
     Table,
     data_uri,
 )
-from enpointe.report.films import film_of
+from enpointe.report.facing import in_front_of, seen_from
+from enpointe.report.films import HALL, film_of
 from enpointe.report.pages import PICTURE_WIDTH
 from enpointe.report.pictures import contact_sheet, fitted_view, jpeg, stills
 from enpointe.report.promises import contacts_section
@@ -49,11 +50,12 @@ def draw_file(
     danced = [dance.danced.sample(float(t))[0] for t in times]
     model = dance.motion.model
     progress("pictures", 0, 1)
-    view = fitted_view(model, [*asked, *danced], View.three_quarter(), follow=True)
+    front = in_front_of(dance.motion, View.three_quarter())
+    view = fitted_view(model, [*asked, *danced], front, follow=True)
     drawn, warning = stills(model, [*asked, *danced], [view])
     progress("pictures", 1, 1)
     pairs = [[drawn[i][0], drawn[i + MOMENTS][0]] for i in range(MOMENTS)]
-    film = film_of(filmed, progress) if video else None
+    film = film_of(filmed, progress, in_front_of(dance.motion, HALL)) if video else None
     titles = [_moment(dance, float(t)) for t in times]
     sheet = contact_sheet(pairs, titles, [("left the file, right danced", False)] * MOMENTS)
     parts = {"moments": ("moments.png", sheet)}
@@ -63,7 +65,7 @@ def draw_file(
     sections = [
         Section("figures", "Figures", (words.figure_table(dance, figures),)),
         _spans_section(dance),
-        film_section(film, dance.recording is not None),
+        film_section(film, dance.recording is not None, seen_from(dance.motion)),
         _moments_section(pairs, titles),
         _differences_section(apart) if apart else None,
         *((contacts_section(figures),) if dance.recording is not None else ()),

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
+from PIL import Image
 
 from enpointe.danced import Danced
 from enpointe.preparing import Progress
@@ -25,7 +26,7 @@ from enpointe.sim.video import (
     write_mp4,
 )
 
-__all__ = ["FilmFile", "film_of"]
+__all__ = ["HALL", "FilmFile", "FilmSize", "film_of"]
 
 HEIGHT_ONE, HEIGHT_SEVERAL = 600, 400
 FPS, FPS_SLOW = 20.0, 10.0
@@ -35,6 +36,8 @@ FRAMES_MAX, FRAMES_MAX_SKETCHED = 700, 250
 FPS_MIN = 4.0
 SMALLER = 0.6
 """Scale of a GIF and of a sketched film."""
+HALL = View(elevation=-9.0)
+"""From the audience, a little above so that the floor is seen."""
 _FITTED_POSES = 40
 
 
@@ -55,27 +58,57 @@ class FilmFile:
     size: tuple[int, int]
 
 
-def film_of(performances: Mapping[str, Danced], progress: Progress) -> FilmFile:
+@dataclass(frozen=True, slots=True)
+class FilmSize:
+    """How large and how fine a film is that this machine can paint in time.
+
+    Attributes:
+        width: Of each of those side by side, pixels.
+        height: Pixels.
+        fps: Frames a second.
+        mp4: Whether it is one, and not a GIF.
+    """
+
+    width: int
+    height: int
+    fps: float
+    mp4: bool
+
+    @classmethod
+    def of(cls, durations: Sequence[float]) -> FilmSize:
+        """For dances of so many seconds, side by side if there are several."""
+        mp4, sketched = can_write_mp4(), gl_backend() is None
+        height = HEIGHT_SEVERAL if len(durations) > 1 else HEIGHT_ONE
+        if sketched or not mp4:
+            height = int(SMALLER * height)
+        wanted = FPS if mp4 and not sketched else FPS_SLOW
+        most = FRAMES_MAX_SKETCHED if sketched else FRAMES_MAX
+        affordable = most / (max(durations) * len(durations))
+        fps = max(min(wanted, affordable), FPS_MIN)
+        return cls(round(ASPECT * height), height, fps, mp4)
+
+    def write(self, folder: Path, pictures: Iterator[Image.Image]) -> FilmFile:
+        """Write a film into a folder, and read it back."""
+        first = next(pictures)
+        name = "dance.mp4" if self.mp4 else "dance.gif"
+        write = write_mp4 if self.mp4 else write_gif
+        path = write(folder / name, itertools.chain([first], pictures), self.fps)
+        mime = "video/mp4" if self.mp4 else "image/gif"
+        return FilmFile(name, path.read_bytes(), mime, first.size)
+
+
+def film_of(performances: Mapping[str, Danced], progress: Progress, view: View = HALL) -> FilmFile:
     """Film performances, side by side if there are several.
 
     Args:
         performances: By caption; a single one needs none.
         progress: Told how many frames are painted.
+        view: From where; so far back that all are in the picture.
     """
-    mp4, sketched = can_write_mp4(), gl_backend() is None
-    several = len(performances) > 1
-    height = HEIGHT_SEVERAL if several else HEIGHT_ONE
-    if sketched or not mp4:
-        height = int(SMALLER * height)
-    width = round(ASPECT * height)
-    longest = max(p.danced.duration for p in performances.values())
-    wanted = FPS if mp4 and not sketched else FPS_SLOW
-    most = FRAMES_MAX_SKETCHED if sketched else FRAMES_MAX
-    affordable = most / (longest * len(performances))
-    fps = max(min(wanted, affordable), FPS_MIN)
     motions = [p.danced for p in performances.values()]
-    view = _view(performances)
-    frames = sum(len(frame_samples(m.time, fps)) for m in motions)
+    size = FilmSize.of([motion.duration for motion in motions])
+    view = _fitted(performances, view)
+    frames = sum(len(frame_samples(m.time, size.fps)) for m in motions)
     painted = 0
 
     def count(_done: int, _total: int) -> None:
@@ -84,7 +117,7 @@ def film_of(performances: Mapping[str, Danced], progress: Progress) -> FilmFile:
         progress("film", painted, frames)
 
     # One painter serves all: contexts are dear, and the variants share the body.
-    painter, _ = open_painter(motions[0].model, width, height)
+    painter, _ = open_painter(motions[0].model, size.width, size.height)
     with painter, TemporaryDirectory() as folder:
         reels = [
             film(
@@ -92,30 +125,26 @@ def film_of(performances: Mapping[str, Danced], progress: Progress) -> FilmFile:
                 motion.qpos,
                 painter,
                 view,
-                fps,
+                size.fps,
                 overlays=_overlays(performance),
                 progress=count,
             )
             for performance, motion in zip(performances.values(), motions, strict=True)
         ]
-        pictures = side_by_side(reels, list(performances)) if several else reels[0]
-        first = next(pictures)
-        name = "dance.mp4" if mp4 else "dance.gif"
-        write = write_mp4 if mp4 else write_gif
-        path = write(Path(folder) / name, itertools.chain([first], pictures), fps)
-        data = path.read_bytes()
-    return FilmFile(name, data, "video/mp4" if mp4 else "image/gif", first.size)
+        several = len(performances) > 1
+        return size.write(
+            Path(folder), side_by_side(reels, list(performances)) if several else reels[0]
+        )
 
 
-def _view(performances: Mapping[str, Danced]) -> View:
-    """From the audience, a little above so that the floor is seen."""
+def _fitted(performances: Mapping[str, Danced], view: View) -> View:
     poses = []
     for performance in performances.values():
         qpos = performance.danced.qpos
         some = np.unique(np.linspace(0, len(qpos) - 1, _FITTED_POSES).astype(int))
         poses += list(qpos[some])
     model = next(iter(performances.values())).motion.model
-    return fitted_view(model, poses, View(elevation=-9.0))
+    return fitted_view(model, poses, view)
 
 
 def _overlays(performance: Danced) -> Callable[[int], Overlays | None] | None:

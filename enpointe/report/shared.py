@@ -7,6 +7,7 @@ import mujoco
 import enpointe
 from enpointe.danced import Danced
 from enpointe.report.blocks import Chart, Film, Section, data_uri
+from enpointe.report.facing import SEEN
 from enpointe.report.films import FilmFile
 from enpointe.report.forces import force_chart
 from enpointe.report.ground import margin_chart, support_chart
@@ -15,11 +16,11 @@ from enpointe.report.joints import joint_chart, joint_rows
 __all__ = ["film_section", "footer", "physics_sections"]
 
 
-def film_section(film: FilmFile | None, physical: bool) -> Section | None:
-    """The film, where there is one."""
+def film_section(film: FilmFile | None, physical: bool, seen: str = SEEN) -> Section | None:
+    """The film, where there is one; `seen` says from where."""
     if film is None:
         return None
-    caption = "Seen from the audience."
+    caption = seen
     if physical:
         caption += (
             " On the floor under a dancer with weight, where the feet do not hide them: the "

@@ -6,6 +6,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from enpointe.comparing import Comparison
+from enpointe.comparing_bodies import BodyComparison
 from enpointe.comparing_file import FileComparison
 from enpointe.files import atomic_path, write_bytes
 from enpointe.models import KeyPose
@@ -17,6 +18,7 @@ from enpointe.posing import Poses
 from enpointe.preparing import Progress, silent
 from enpointe.report import words
 from enpointe.report.blocks import Page
+from enpointe.report.bodies import draw_bodies
 from enpointe.report.file_page import draw_file
 from enpointe.report.films import FilmFile, film_of
 from enpointe.report.page import render
@@ -26,7 +28,7 @@ from enpointe.sim.camera import View
 
 __all__ = ["ReportFiles", "write_report"]
 
-Reported = Performance | Comparison | Poses | FilePerformance | FileComparison
+Reported = Performance | Comparison | Poses | FilePerformance | FileComparison | BodyComparison
 
 
 class ReportFiles(dict[str, Path]):
@@ -52,10 +54,11 @@ def write_report(
 
     `report.html` holds everything in itself; beside it stand `stave.svg`, `key-poses.png` and the
     film (`dance.mp4`, or `dance.gif` without the video extra). Of a motion file there is no stave,
-    and `moments.png` instead of key poses.
+    and `moments.png` instead of key poses; of several bodies there is the film alone.
 
     Args:
-        dance: What `perform`, `perform_file`, `compare`, `compare_file` or `pose` returned.
+        dance: What `perform`, `perform_file`, `compare`, `compare_file`, `compare_bodies` or
+            `pose` returned.
         out: The folder; made if it isn't there.
         video: Whether to paint a film; poses have none.
         progress: Told how far it is.
@@ -98,6 +101,8 @@ def _draw(
     """The files beside the page by name, the page, and the warning."""
     if isinstance(dance, FilePerformance | FileComparison):
         return draw_file(dance, video, progress)
+    if isinstance(dance, BodyComparison):
+        return draw_bodies(dance, video, progress)
     if isinstance(dance, Poses):
         score, poses = dance.score, dance.key_poses
         model = dance.model

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from math import hypot, log
 
 from enpointe.motion.formats.skeleton import Joint
@@ -32,18 +33,25 @@ _CHAIN = 1.5
 def stature(joints: tuple[Joint, ...]) -> float:
     """How tall a person with such bones is, in the file's units, however the skeleton rests.
 
-    The longest way along bones through the tree of joints, over what that is to a stature.
+    The longest way along bones through the tree of joints, over what that is to a stature. A root
+    that has one joint below it is a place on the floor or a scene, and the way to there no bone.
     """
+    below = Counter(joint.parent for joint in joints)
     deepest = [0.0] * len(joints)
     longest = 0.0
     for index in range(len(joints) - 1, -1, -1):
         joint = joints[index]
         for end in joint.ends:
             longest, deepest[index] = _joined(longest, deepest[index], hypot(*end))
-        if joint.parent >= 0:
+        parent = joint.parent
+        if parent >= 0 and not (below[parent] == 1 and _is_bare_root(joints[parent])):
             reach = deepest[index] + hypot(*joint.offset)
-            longest, deepest[joint.parent] = _joined(longest, deepest[joint.parent], reach)
+            longest, deepest[parent] = _joined(longest, deepest[parent], reach)
     return longest / _CHAIN
+
+
+def _is_bare_root(joint: Joint) -> bool:
+    return joint.parent < 0 and not joint.ends
 
 
 def guessed_unit(joints: tuple[Joint, ...]) -> tuple[float, str]:

@@ -29,23 +29,23 @@ _CENTRAL: Mapping[str, tuple[str, ...]] = {
     "neck": ("lowerneck", "neck", "neck1", "upperneck"),
     "head": ("head",),
 }
-# Plug-in gait and Helen Hayes, CMU, the anatomical names of Qualisys' and OpenSim's examples.
+# Plug-in gait and Helen Hayes, CMU, the anatomical names of Qualisys' and OpenSim's examples, BTS.
 _MARKERS: Mapping[str, tuple[str, ...]] = {
     "front_hip": ("asi", "asis", "fwt", "ias"),
     "back_hip": ("psi", "psis", "bwt", "ips"),
     "hip": ("hjc", "hip"),
-    "knee": ("kne", "knee", "fle", "kneelateral"),
-    "knee+": ("knm", "mkne", "kneemed", "kneemedial", "fme"),
-    "ankle": ("ank", "ankle", "fal", "anklelateral"),
-    "ankle+": ("mma", "mank", "anklemed", "anklemedial", "tam"),
+    "knee": ("kne", "knee", "fle", "kneelateral", "kneelat", "lfc", "knee1", "kne1"),
+    "knee+": ("knm", "mkne", "kneemed", "kneemedial", "fme", "mfc", "knee2", "kne2"),
+    "ankle": ("ank", "ankle", "fal", "anklelateral", "anklelat", "lmal", "mall"),
+    "ankle+": ("mma", "mank", "anklemed", "anklemedial", "tam", "mmal"),
     "heel": ("hee", "heel", "hel", "fcc"),
-    "toe": ("toe", "mt2", "fm2", "fm1"),
-    "toe+": ("mt5", "fm5"),
-    "shoulder": ("sho", "shoulder", "acr", "saj"),
+    "toe": ("toe", "mt2", "fm2", "fm1", "toemed", "met"),
+    "toe+": ("mt5", "fm5", "toelat"),
+    "shoulder": ("sho", "shoulder", "acr", "saj", "acromion", "acromium", "should"),
     "elbow": ("elb", "elbow", "hle", "lel"),
     "elbow+": ("hme", "mel", "elbm"),
-    "wrist": ("wra", "wrist", "rsp"),
-    "wrist+": ("wrb", "uhe"),
+    "wrist": ("wra", "wrist", "rsp", "wristlat"),
+    "wrist+": ("wrb", "uhe", "wristmed"),
     "hand": ("fin", "hm2", "mcp3"),
     "front_head": ("fhd", "hdf"),
     "back_head": ("bhd", "hdb"),
@@ -55,7 +55,7 @@ _CENTRAL_MARKERS: Mapping[str, tuple[str, ...]] = {
     "chest_back": ("c7", "cv7"),
     "sternum": ("strn", "px", "sxs"),
     "back": ("t10", "tv8", "t8"),
-    "sacrum": ("sacr", "sacrum", "vsacral"),
+    "sacrum": ("sacr", "sacrum", "vsacral", "vsac"),
 }
 
 

@@ -224,7 +224,8 @@ def test_pd_commands_the_reference_and_its_gains() -> None:
     control = PD(reference)
     assert isinstance(control, Controller)
     nu = MODEL.nu
-    state = State(0.0, reference.qpos[0], np.zeros(MODEL.nv), *np.zeros((2, nu)), np.ones(nu, bool))
+    still, none = np.zeros(MODEL.nv), np.zeros(nu)
+    state = State(0.0, reference.qpos[0], still, none, none, np.ones(nu, bool))
     control.reset(state)
     for t in (0.0, 2.345, reference.duration, reference.duration + 5):
         command = control.command(t, state)
@@ -241,7 +242,8 @@ def test_gains_and_torques_may_be_brought_along() -> None:
     reference = Motion.from_qpos(model, [0.0, 1.0], np.tile([0, 0, 1, 1, 0, 0, 0, 0.5], (2, 1)))
     gains = Gains(np.array([7.0]), np.array([0.3]))
     torques = FeedForward(np.array([0.0, 0.02]), np.full((2, 1), 0.25), np.zeros(2))
-    state = State(0.0, reference.qpos[0], np.zeros(7), *np.zeros((2, 1)), np.ones(1, bool))
+    none = np.zeros(1)
+    state = State(0.0, reference.qpos[0], np.zeros(7), none, none, np.ones(1, bool))
     command = PD(reference, gains, torques).command(0.3, state)
-    assert (command.stiffness, command.damping, command.torque) == (7.0, 0.3, 0.25)
+    assert (*command.stiffness, *command.damping, *command.torque) == (7.0, 0.3, 0.25)
     assert command.position == 0.5

@@ -113,6 +113,7 @@ def test_the_solution_is_that_of_the_plain_programme(name: str) -> None:
     solution = qpsolvers.solve_problem(dense, "daqp")
     unknowns = problem.solve()
     assert solution.found
+    assert solution.x is not None
     assert unknowns is not None
     for part in (problem.instant.accelerations, problem.instant.forces):
         tolerance = 1e-6 * max(1.0, np.abs(solution.x[part]).max(initial=0.0))
@@ -149,6 +150,7 @@ def test_a_task_over_all_unknowns_is_solved_as_it_is() -> None:
     assert problem.separate is None
     unknowns, solution = problem.solve(), qpsolvers.solve_problem(plain(problem), "daqp")
     assert solution.found
+    assert solution.x is not None
     assert unknowns is not None
     np.testing.assert_allclose(unknowns, solution.x, atol=1e-6 * np.abs(solution.x).max())
 

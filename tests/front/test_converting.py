@@ -98,7 +98,7 @@ def test_joints_become_markers_where_they_are(bvh: Path, suffix: str) -> None:
     assert isinstance(found, MarkerMotion)
     assert found.names == ("hips", "knee", "hips end", "knee end")
     points = found.space.points(found.positions)
-    assert np.allclose(points[0], [[0, 0, 1], [0, 0, 0.55], [0, 0, 2.65], [0, 0, 0.1]], atol=1e-6)
+    assert np.allclose(points[0], [[0, 0, 1.0], [0, 0, 0.55], [0, 0, 2.65], [0, 0, 0.1]], atol=1e-6)
     assert np.allclose(points[-1, 3], [-0.45, 0, 0.55], atol=1e-6)
 
 
@@ -199,7 +199,9 @@ def test_a_unit_without_a_name_becomes_millimetres(home: Path, suffix: str) -> N
 def test_an_ending_can_be_overruled(bvh: Path) -> None:
     done = enpointe.convert(bvh, "leg.dat", to="gtr")
     assert done.written == "GTR"
-    assert read("leg.dat").motion.frames == 31
+    found = read("leg.dat").motion
+    assert isinstance(found, SkeletonMotion)
+    assert found.frames == 31
 
 
 @pytest.mark.parametrize(

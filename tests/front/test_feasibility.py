@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -102,7 +103,7 @@ def test_a_movement_of_another_body_is_refused() -> None:
 
 
 @pytest.mark.parametrize("supply", [{"voltage": 30.0}, {"reserve": 1.0}])
-def test_a_supply_that_servos_do_not_take_is_refused(supply: dict[str, float]) -> None:
+def test_a_supply_that_servos_do_not_take_is_refused(supply: dict[str, Any]) -> None:
     with pytest.raises(RigError):
         feasible(kick(10.0), "op3", stand=True, **supply)
 

@@ -17,7 +17,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from enpointe.errors import EnpointeError
-from enpointe.files import atomic_path, write_bytes, write_text
+from enpointe.files import atomic_path, refuse_unwritable, write_bytes, write_text
 
 OLD = b"what was here before"
 
@@ -235,6 +235,16 @@ def test_a_folder_that_refuses_is_said_to_root_too(
     with pytest.raises(EnpointeError) as caught:
         write_text(tmp_path / "dance.txt", "x")
     one_line(caught, "no leave to write", str(tmp_path))
+
+
+def test_a_folder_is_made_sure_of_and_left_as_it_was(tmp_path: Path) -> None:
+    refuse_unwritable(tmp_path / "new" / "newer" / "a.npz")
+    assert list(tmp_path.iterdir()) == []
+    there = write_text(tmp_path / "a.txt", "as it was")
+    refuse_unwritable(there)
+    assert there.read_text(encoding="utf-8") == "as it was"
+    with pytest.raises(EnpointeError, match="is a file where a folder should be"):
+        refuse_unwritable(there / "b.npz")
 
 
 def test_a_link_stays_and_the_file_it_points_to_is_replaced(tmp_path: Path) -> None:

@@ -104,6 +104,7 @@ def test_the_command_prints_its_figures_and_writes_its_files(
     figures = one_object(capfd.readouterr().out)
     assert figures["completed"] is True
     assert {Path(path).name for path in figures["files"].values()} == {
+        "feasibility.html",
         "motion.npz",
         "recording.npz",
     }
@@ -116,7 +117,7 @@ def test_a_dry_run_says_whether_and_dances_nothing(
     words = ["servo", str(wave), "--rig", "op3", "--dry-run", "--out", str(tmp_path), "--json"]
     assert _run(words) == 0
     assert one_object(capfd.readouterr().out)["feasible"] is True
-    assert list(tmp_path.iterdir()) == []
+    assert [path.name for path in tmp_path.iterdir()] == ["feasibility.html"]
 
 
 @pytest.mark.parametrize(
@@ -153,6 +154,14 @@ def test_a_port_that_another_program_has_is_refused_with_its_name(
     for end in (ours, theirs):
         os.close(end)
     assert f"(process {program.pid}) has {port} open" in line
+
+
+def test_a_folder_that_cannot_be_is_known_before_the_dance(
+    wave: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("enpointe.servoing.servo", lambda *_, **__: pytest.fail("danced"))
+    words = ["servo", str(wave), "--rig", "op3", "--port", "memory", "--out", str(wave / "out")]
+    assert "is a file where a folder should be" in refused(capfd, *words)
 
 
 def test_calibrate_wants_a_file_or_set_up(capfd: pytest.CaptureFixture[str]) -> None:

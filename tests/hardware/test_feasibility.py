@@ -33,7 +33,13 @@ def swing(
     angle = amplitude * np.sin(w * TIME)
     speed, rise = amplitude * w * np.cos(w * TIME), -amplitude * w**2 * np.sin(w * TIME)
     arrays = (angle, speed, rise, np.full_like(TIME, weight), inertia * rise)
-    return Demand(("knee",), TIME, *(array[:, None] for array in arrays))
+    return demand_of(arrays)
+
+
+def demand_of(arrays: tuple[Array, ...], time: Array = TIME) -> Demand:
+    """What one joint is asked: its position, velocity, acceleration, static and dynamic torque."""
+    position, velocity, acceleration, static, dynamic = (array[:, None] for array in arrays)
+    return Demand(("knee",), time, position, velocity, acceleration, static, dynamic)
 
 
 def looked_at(demand: Demand, limit: JointLimit = FREE, **rest: int) -> Assessment:
@@ -80,7 +86,7 @@ def test_torque_at_speed_is_the_datasheets_line(share: float, turned: float) -> 
             turned * torque + 0 * TIME,
             0 * TIME,
         )
-        demand = Demand(("knee",), TIME, *(array[:, None] for array in arrays))
+        demand = demand_of(arrays)
         assert looked_at(demand).feasible is feasible
 
 
@@ -122,7 +128,7 @@ def test_a_throw_that_only_speed_makes_possible_is_not_slowed() -> None:
     # Held by the swing of the limb, not by the motor: in twice the time the motor can't hold it.
     lift = -1.5 * XM430.stall_torque
     arrays = (0 * TIME, 0 * TIME, 0 * TIME, 0 * TIME - lift, 0 * TIME + lift)
-    demand = Demand(("knee",), TIME, *(array[:, None] for array in arrays))
+    demand = demand_of(arrays)
     assert looked_at(demand).feasible
     assert looked_at(demand.scaled(2.0)).time_scale is None
 
@@ -200,7 +206,7 @@ def test_a_dance_repeated_until_it_is_too_hot_is_infeasible() -> None:
 
 def test_a_load_that_shuts_the_servo_down_is_infeasible() -> None:
     arrays = (0 * TIME, 0 * TIME, 0 * TIME, 0 * TIME + 0.9 * XM430.stall_torque, 0 * TIME)
-    demand = Demand(("knee",), 3.0 * TIME, *(array[:, None] for array in arrays))
+    demand = demand_of(arrays, 3.0 * TIME)
     found = looked_at(demand)
     assert found.time_scale is None
     assert {excess.kind for excess in found.hopeless} == {"overload"}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from dynamixel_sdk import COMM_RX_TIMEOUT
@@ -197,7 +199,7 @@ def test_the_watchdog_sleeps_while_torque_is_off() -> None:
     ],
 )
 def test_shutdown_lasts_until_a_reboot(fault: Fault, bit: int) -> None:
-    rig = Rig(faults=[Fault(**{**plain(fault), "duration": (0.5, 0.5)})])
+    rig = Rig(faults=[replace(fault, duration=(0.5, 0.5))])
     rig.set("Torque Enable", 1)
     rig.wait(1.0)
     assert rig.servos[0].memory["Hardware Error Status"] & bit
@@ -210,10 +212,6 @@ def test_shutdown_lasts_until_a_reboot(fault: Fault, bit: int) -> None:
     assert rig.packets.reboot(rig.port, 1)[0] == 0
     rig.wait(0.2)
     rig.set("Torque Enable", 1)
-
-
-def plain(fault: Fault) -> dict[str, object]:
-    return {name: getattr(fault, name) for name in ("kind", "ids", "at", "amount")}
 
 
 def test_an_unmasked_error_is_told_and_torque_stays() -> None:

@@ -59,7 +59,7 @@ def test_the_sdk_pings_writes_and_reads_through_the_port(port: PortHandler) -> N
         if read.fastSyncRead() != COMM_SUCCESS or read.txRxPacket() != COMM_SUCCESS:
             return -1
         found = {number: read.getData(number, 132, 4) for number in goals}
-        return max(abs(found[number] - goal) for number, goal in goals.items()) > 10
+        return int(max(abs(found[number] - goal) for number, goal in goals.items()) > 10)
 
     for _ in range(400):
         if arrived() == 0:

@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 
 from enpointe.models import Figure, KeyPose, PoseTarget
-from enpointe.models.contact_geometry import PLATFORM_RISE
+from enpointe.models.contact_geometry import PLATFORM, PLATFORM_RISE
 from enpointe.models.foot_positions import Footprint, support_hull
 from enpointe.models.leg_target import (
     FOOT_JOINTS,
-    PLATFORM,
     POINTED_DEG,
     InAir,
     LegTarget,
@@ -177,13 +176,13 @@ def _most_room(data: mujoco.MjData, target: PoseTarget) -> float:
     return float((offsets - normals @ centroid(hull)).min())
 
 
-def too_deep(model: mujoco.MjModel, qpos: np.ndarray) -> dict[tuple[str, ...], float]:
+def too_deep(model: mujoco.MjModel, qpos: np.ndarray) -> dict[tuple[str, str], float]:
     """Parts deeper in one another, or in the floor, than is let pass: depth, mm."""
     found = {}
     for pair, depth in overlaps(model, qpos).items():
-        parts = tuple(sorted(_without_side(part) for part in pair))
-        if depth > OVERLAPS.get(parts, 0.0):
-            found[parts] = depth
+        one, other = sorted(_without_side(part) for part in pair)
+        if depth > OVERLAPS.get((one, other), 0.0):
+            found[one, other] = depth
     return found
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 from functools import cache
 
 import mujoco
@@ -122,7 +123,14 @@ def _distinct_frames() -> list[tuple[str, int]]:
     for name in shipped_scores():
         for index, frame in enumerate(load_score(name).resolved()):
             pose = replace(
-                frame, beat=0, travel=None, turn=None, paths={}, locomotion={}, jump=None, pose=None
+                frame,
+                beat=Fraction(0),
+                travel=None,
+                turn=None,
+                paths={},
+                locomotion={},
+                jump=None,
+                pose=None,
             )
             if pose not in seen:
                 seen.append(pose)
@@ -234,4 +242,5 @@ def rotation_between(data: mujoco.MjData, outer: str, inner: str) -> Rotation:
 
 
 def in_frame(data: mujoco.MjData, body: str, point: np.ndarray) -> np.ndarray:
-    return data.body(body).xmat.reshape(3, 3).T @ (point - data.body(body).xpos)
+    seen: np.ndarray = data.body(body).xmat.reshape(3, 3).T @ (point - data.body(body).xpos)
+    return seen

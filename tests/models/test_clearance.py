@@ -112,7 +112,9 @@ def test_a_passing_leg_goes_round_the_other(cross: float, solver: KeyPoseSolver)
     """Its way leads through the standing leg; the pose stops at the skin, from either guess."""
     target = crossed_in_passing(cross)
     straight_through = solved("leg raised seconde 45").qpos.copy()
-    for name, angle in zip(LEG_JOINTS, target.legs[Side.RIGHT].angles, strict=True):
+    passing = target.legs[Side.RIGHT]
+    assert isinstance(passing, Passing)
+    for name, angle in zip(LEG_JOINTS, passing.angles, strict=True):
         straight_through[solver.model.joint(f"right_{name}").qposadr[0]] = angle
     assert frozenset({"left_thigh", "right_thigh"}) in overlaps(solver.model, straight_through)
     for guess in (None, solved("leg raised seconde 45").qpos):

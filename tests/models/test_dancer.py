@@ -173,7 +173,8 @@ def test_a_positive_angle_moves_the_limb_the_way_it_is_named(
         qpos = standing(model)
         before = np.array(at(model, qpos).site(site).xpos)
         qpos[model.joint(joint).qposadr[0]] = angle
-        return np.array(at(model, qpos).site(site).xpos) - before
+        way: np.ndarray = np.array(at(model, qpos).site(site).xpos) - before
+        return way
 
     assert moved(f"{side}_elbow_bend", f"{side}_wrist")[0] > 0.03
     assert moved(f"{side}_shoulder_raise", f"{side}_wrist")[2] > 0.01

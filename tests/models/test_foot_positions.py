@@ -59,7 +59,8 @@ def gap(one: np.ndarray, other: np.ndarray) -> float:
 
 def outline(foot: Footprint, figure: Figure) -> np.ndarray:
     corners = foot.sole(figure)
-    return corners[ConvexHull(corners).vertices]
+    hull: np.ndarray = corners[ConvexHull(corners).vertices]
+    return hull
 
 
 @given(figures, positions, turnouts)

@@ -51,7 +51,7 @@ FOREIGN = """
 
 def any_qpos(model: mujoco.MjModel, rng: np.random.Generator) -> np.ndarray:
     """Any configuration at all; quaternions are drawn at random and normalised."""
-    qpos = rng.uniform(-np.pi, np.pi, model.nq)
+    qpos: np.ndarray = rng.uniform(-np.pi, np.pi, model.nq)
     for j in range(model.njnt):
         start, kind = model.jnt_qposadr[j], model.jnt_type[j]
         offset = {int(mujoco.mjtJoint.mjJNT_FREE): 3, int(mujoco.mjtJoint.mjJNT_BALL): 0}
@@ -205,7 +205,8 @@ def right_jacobian(vector: np.ndarray) -> np.ndarray:
     skew = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     first = (1 - np.cos(angle)) / angle**2
     second = (angle - np.sin(angle)) / angle**3
-    return np.eye(3) - first * skew + second * skew @ skew
+    jacobian: np.ndarray = np.eye(3) - first * skew + second * skew @ skew
+    return jacobian
 
 
 @given(st.lists(st.floats(-3.1, 3.1), min_size=3, max_size=3))

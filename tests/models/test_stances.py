@@ -149,8 +149,8 @@ def test_a_tendu_and_back_ends_where_it_began() -> None:
     for side in Side:
         if side is Side.LEFT:
             assert np.allclose(ball(fifth, side), ball(tendu, side), atol=1e-9)
-        apart = [g.prints[side].ankle - g.prints[side.other].ankle for g in (fifth, closed)]
-        assert np.allclose(*apart, atol=1e-9)
+        one, other = (g.prints[side].ankle - g.prints[side.other].ankle for g in (fifth, closed))
+        assert np.allclose(one, other, atol=1e-9)
         assert np.allclose(fifth.prints[side].ankle, closed.prints[side].ankle, atol=1e-9)
 
 

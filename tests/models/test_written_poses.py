@@ -145,7 +145,8 @@ def hip_turnout(data: mujoco.MjData, side: Side) -> float:
     down, along, face = np.array([0.0, 0, -1]), -thigh[:, 2], thigh[:, 0]
 
     def carried(w: np.ndarray) -> np.ndarray:
-        return w - (along @ w) / (1 + along @ down) * (along + down)
+        turned: np.ndarray = w - (along @ w) / (1 + along @ down) * (along + down)
+        return turned
 
     outward = np.array([0.0, 1.0 if side is Side.LEFT else -1.0, 0.0])
     return float(np.degrees(np.arctan2(face @ carried(outward), face @ carried(np.eye(3)[0]))))

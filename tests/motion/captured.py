@@ -86,7 +86,7 @@ class Skeleton:
             turn = Rotation.from_euler("xyz", angles, degrees=True)
             turns[name] = turns[parent] * bone.axis * turn * bone.axis.inv()
             ends[name] = ends[parent] + turns[name].apply(bone.offset)
-        points = {}
+        points: dict[str, Vector] = {}
         for side, s in (("left", "l"), ("right", "r")):
             points |= {f"{side}_{joint}": ends[s + bone] for joint, bone in _ENDS.items()}
             # The sole is as far below the ankle as the ball of the foot at rest.
@@ -99,7 +99,8 @@ class Skeleton:
         scale = leg / own
 
         def ours(name: str) -> Vector:
-            return TO_OURS @ turns[name].as_matrix() @ TO_OURS.T
+            turned: Vector = TO_OURS @ turns[name].as_matrix() @ TO_OURS.T
+            return turned
 
         return Joints(
             points={name: scale * (TO_OURS @ point) for name, point in points.items()},

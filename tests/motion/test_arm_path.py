@@ -159,11 +159,11 @@ def test_elsewhere_a_direct_path_is_the_shortest(
 def test_both_arms_do_the_same(start: ArmTarget, end: ArmTarget, space: float, k: float) -> None:
     across = np.array([1.0, -1.0, 1.0])
     figure = solver().figure
-    mirrored = [
+    first, last = (
         rounded_arm(a.wrist * across, Side.RIGHT, figure, Style(), a.wrist_bend)
         for a in (start, end)
-    ]
-    left, right = path(start, end, space), path(*mirrored, space, Side.RIGHT)
+    )
+    left, right = path(start, end, space), path(first, last, space, Side.RIGHT)
     np.testing.assert_allclose(left.wrist(k) * across, right.wrist(k), atol=1e-9)
     assert left.at_share(k) == pytest.approx(right.at_share(k), abs=1e-9)
 

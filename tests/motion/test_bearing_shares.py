@@ -19,7 +19,7 @@ def test_weight_comes_and_goes_gently(
     pattern: list[tuple[bool, bool]], seconds: float, scale: float
 ) -> None:
     bears = np.array(pattern)
-    time = 0.01 * np.arange(len(bears))
+    time = 0.01 * np.arange(len(bears), dtype=float)
     schedule = ContactSchedule(time, np.arange(2), np.zeros((len(bears), 2, 3)), bears)
     shares = schedule.shares(seconds)
     assert np.all(shares[~bears] == 0.0)

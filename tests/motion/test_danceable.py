@@ -45,7 +45,7 @@ def feet(contacts: ContactSchedule) -> dict[str, np.ndarray]:
     """(T,) whether each foot bears anything."""
     names = [MODEL.geom(int(g)).name for g in contacts.soles]
     return {
-        side: contacts.bears[:, [n.startswith(side) for n in names]].any(axis=1)
+        side: np.asarray(contacts.bears[:, [n.startswith(side) for n in names]].any(axis=1))
         for side in ("left", "right")
     }
 

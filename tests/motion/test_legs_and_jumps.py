@@ -57,7 +57,8 @@ def known(request: pytest.FixtureRequest) -> None:
 
 def lowest(moved: Dance) -> Array:
     """Lowest point of both soles, (T,), m."""
-    return np.min([points[:, :, 2].min(axis=1) for points in moved.soles.values()], axis=0)
+    least: Array = np.min([points[:, :, 2].min(axis=1) for points in moved.soles.values()], axis=0)
+    return least
 
 
 def outside(com: Array, points: Array) -> float:

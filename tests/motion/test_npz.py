@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -41,14 +42,14 @@ def test_nothing_is_lost(stored: Path) -> None:
 def test_hard_numbers_and_names_survive(tmp_path: Path) -> None:
     rng = np.random.default_rng(3)
     time = np.r_[0.0, np.cumsum(rng.uniform(1e-300, 1e-3, 9))]
-    arrays = [
+    qpos, qvel, qacc = (
         rng.normal(size=(10, n)) * 10.0 ** rng.integers(-300, 300, (10, n)) for n in (8, 7, 7)
-    ]
+    )
     events = (
         Event(0.0, "key pose", "à la seconde · 第五", None),
         Event(1e-9, "contact", "", 1 / 3),
     )
-    motion = Motion(tiny_model(), time, *arrays, events, "pas de chat\n")
+    motion = Motion(tiny_model(), time, qpos, qvel, qacc, events, "pas de chat\n")
     save_motion(motion, tmp_path / "m.npz")
     assert same(load_motion(tmp_path / "m.npz", tiny_model()), motion)
 
@@ -128,14 +129,15 @@ def test_another_format_says_which(stored: Path) -> None:
 
 
 def test_a_format_from_the_future_is_refused(tmp_path: Path) -> None:
-    np.savez(tmp_path / "x.npz", format=np.array("enpointe motion 2"), **motion_arrays(swinging()))
+    arrays: dict[str, Any] = motion_arrays(swinging())
+    np.savez(tmp_path / "x.npz", format=np.array("enpointe motion 2"), **arrays)
     with pytest.raises(FormatError, match="enpointe motion 2"):
         load_motion(tmp_path / "x.npz", tiny_model())
 
 
 @pytest.mark.parametrize("name", motion_arrays(swinging()))
 def test_a_missing_part_is_named(tmp_path: Path, name: str) -> None:
-    arrays = motion_arrays(swinging())
+    arrays: dict[str, Any] = motion_arrays(swinging())
     del arrays[name]
     np.savez(tmp_path / "x.npz", format=np.array("enpointe motion 1"), **arrays)
     with pytest.raises(FormatError, match=name):

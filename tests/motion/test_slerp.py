@@ -34,7 +34,8 @@ def turned(qpos: Array) -> Array:
     data.qpos[:] = qpos
     mujoco.mj_kinematics(MODEL, data)
     world = data.xmat.reshape(-1, 3, 3)
-    return np.einsum("bji,bjk->bik", world[MODEL.body_parentid], world)
+    local: Array = np.einsum("bji,bjk->bik", world[MODEL.body_parentid], world)
+    return local
 
 
 @few

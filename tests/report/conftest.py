@@ -40,6 +40,7 @@ def fallen(physical: Performance) -> Performance:
     recording, measures = physical.recording, physical.measures
     assert recording is not None
     assert measures is not None
+    assert physical.physics is not None
     kept = len(recording.time) // 3
     arrays = ("time", "qpos", "qvel", "effort", "position", "torque", "age", "valid")
     cut = dataclasses.replace(

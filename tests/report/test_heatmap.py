@@ -60,7 +60,9 @@ def test_a_push_is_towards_the_side_it_goes_to() -> None:
 
 
 def test_the_first_two_that_varied_are_mapped() -> None:
-    factors = [{"noise": 1.0, "friction": 0.6 + i, "push_at": float(i)} for i in range(4)]
+    factors: list[dict[str, float | None]] = [
+        {"noise": 1.0, "friction": 0.6 + i, "push_at": float(i)} for i in range(4)
+    ]
     runs = outcomes(factors)
     assert mapped_factors(runs) == ("push_at", "friction")
     assert mapped_factors(runs, ("friction", "push_at")) == ("friction", "push_at")

@@ -26,7 +26,7 @@ from enpointe.sim.camera import Projection, View
 @given(st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=400), st.integers(10, 60))
 def test_a_thinned_series_keeps_its_ends_and_extremes(values: list[float], points: int) -> None:
     series = np.array(values)
-    time, kept = thinned(np.arange(len(series)) * 0.1, series, points)
+    time, kept = thinned(np.arange(len(series), dtype=float) * 0.1, series, points)
     assert len(kept) <= max(points + 4, 4)
     assert (kept.min(), kept.max()) == (series.min(), series.max())
     assert (time[0], time[-1]) == (0.0, 0.1 * (len(series) - 1))

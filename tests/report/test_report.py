@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import re
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import pytest
@@ -173,7 +174,7 @@ def test_the_verdict_comes_first_and_is_honest(
     assert f"down at {fallen.recording.time[-1]:.2f} s" in said
 
 
-def measured(dance: Performance, **figures: float) -> Performance:
+def measured(dance: Performance, **figures: Any) -> Performance:
     """The same dance, had its figures been others."""
     assert dance.physics is not None
     measures = dataclasses.replace(dance.physics.measures, **figures)

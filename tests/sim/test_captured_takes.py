@@ -44,7 +44,7 @@ def test_one_foot_is_always_planted(model: mujoco.MjModel, data_dir: Path) -> No
     made = taken(data_dir, "05_12", model, slice(None, None, 4))
     soles = [model.geom(int(geom)).name for geom in made.contacts.soles]
     down = {
-        side: made.contacts.bears[:, [name.startswith(side) for name in soles]].any(axis=1)
+        side: np.asarray(made.contacts.bears[:, [s.startswith(side) for s in soles]].any(axis=1))
         for side in ("left", "right")
     }
     assert np.all(down["left"] | down["right"])

@@ -30,8 +30,8 @@ def with_load(
     """The recording with one foot's load overwritten for a while."""
     force = np.array(recording.channels["sole_force"], dtype=float)
     moments = (recording.time >= start) & (recording.time < end)
-    rows = np.ix_(moments, sole_sides(recording.model) == side)
-    force[(*rows, 2)] = newtons
+    samples, soles = np.ix_(moments, sole_sides(recording.model) == side)
+    force[samples, soles, 2] = newtons
     return replace(recording, channels={**recording.channels, "sole_force": force})
 
 

@@ -156,4 +156,6 @@ def test_forces_are_those_that_mujoco_tells(cone: mujoco.mjtCone) -> None:
             on_sole = sign * wrench[:3] @ data.contact.frame[i].reshape(3, 3)
             forces[reader.soles.tolist().index(sole)] += on_sole
     assert forces[:, 2].sum() > 100.0
-    np.testing.assert_allclose(reader.observed()["sole_force"], forces, atol=1e-12)
+    np.testing.assert_allclose(
+        np.asarray(reader.observed()["sole_force"], dtype=float), forces, atol=1e-12
+    )

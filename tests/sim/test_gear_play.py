@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import mujoco
 import numpy as np
 import pytest
@@ -176,7 +178,7 @@ def test_the_winding_feels_the_rotor_and_the_sensor_the_horn() -> None:
     """A motor that races in its play is braked by its own voltage, while its horn stands still."""
 
     class Racing:
-        def advance(self, torque: list[float], period: float) -> None: ...
+        def advance(self, torque: Sequence[float], period: float) -> None: ...
         def position(self) -> list[float]: return [0.0]  # fmt: skip
 
         def velocity(self) -> list[float]: return [0.0]  # fmt: skip

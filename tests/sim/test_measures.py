@@ -30,7 +30,7 @@ def standing(samples: int = 500) -> Recording:
     points = plant.data.geom_xpos[plant.sole_geoms] * [1, 1, 0]
     force = np.zeros((len(points), 3))
     force[:, 2] = plant.mass * 9.81 / len(points)
-    time = np.arange(samples) * PERIOD
+    time = np.arange(samples, dtype=float) * PERIOD
     still = np.zeros((samples, MODEL.nu))
 
     def every(value: Array) -> Array:

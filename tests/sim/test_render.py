@@ -227,10 +227,20 @@ def test_without_opengl_a_sketch_is_opened_and_one_line_says_what_to_install(
         GLPainter(stage(), 32, 32)
 
 
+def noting_refusal(tried: list[str]) -> Callable[[str], bool]:
+    """A stand-in for a backend's trial, that says which was tried and that it draws nothing."""
+
+    def draws(backend: str) -> bool:
+        tried.append(backend)
+        return False
+
+    return draws
+
+
 @pytest.mark.usefixtures("fresh_probe")
 def test_the_users_choice_is_the_only_one_tried(monkeypatch: pytest.MonkeyPatch) -> None:
     tried: list[str] = []
-    monkeypatch.setattr(render, "_draws", lambda backend: bool(tried.append(backend)))
+    monkeypatch.setattr(render, "_draws", noting_refusal(tried))
     monkeypatch.setenv("MUJOCO_GL", "OSMesa")
     assert gl_backend() is None
     assert gl_backend() is None
@@ -240,7 +250,7 @@ def test_the_users_choice_is_the_only_one_tried(monkeypatch: pytest.MonkeyPatch)
 @pytest.mark.usefixtures("fresh_probe")
 def test_what_was_looked_for_ahead_is_not_looked_for_again(monkeypatch: pytest.MonkeyPatch) -> None:
     tried: list[str] = []
-    monkeypatch.setattr(render, "_draws", lambda backend: bool(tried.append(backend)))
+    monkeypatch.setattr(render, "_draws", noting_refusal(tried))
     monkeypatch.setenv("MUJOCO_GL", "egl")
     look_for_opengl()
     look_for_opengl()

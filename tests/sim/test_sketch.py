@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import mujoco
 import numpy as np
 import pytest
@@ -160,7 +162,9 @@ def test_overlays_of_the_wrong_shape_are_errors(
 
 
 def test_a_view_that_makes_no_picture_is_an_error() -> None:
-    for wrong in ({"distance": 0.0}, {"fovy": 180.0}, {"azimuth": float("nan")}):
+    impossible: tuple[dict[str, Any], ...]
+    impossible = ({"distance": 0.0}, {"fovy": 180.0}, {"azimuth": float("nan")})
+    for wrong in impossible:
         with pytest.raises(RenderError):
             View(**wrong)
     with pytest.raises(RenderError, match="audience, wings"):

@@ -223,6 +223,8 @@ def test_an_mp4_keeps_its_frames_and_its_time(tmp_path: Path, size: tuple[int, i
         stream = box.streams.video[0]
         times, pictures = [], []
         for frame in box.decode(stream):
+            assert frame.pts is not None
+            assert frame.time_base is not None
             times.append(float(frame.pts * frame.time_base))
             pictures.append(frame.to_ndarray(format="rgb24"))
         assert (stream.codec_context.name, stream.codec_context.pix_fmt) == ("h264", "yuv420p")

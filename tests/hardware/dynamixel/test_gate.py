@@ -59,7 +59,7 @@ def test_it_says_what_it_changed() -> None:
     far = tested.pass_on(np.array([9000.0]), PERIOD)
     assert far.limited.all()
     assert far.slowed.all()
-    near = tested.pass_on(far.goal + 1.0, 2 * PERIOD)
+    near = tested.pass_on(far.goal.astype(float) + 1.0, 2 * PERIOD)
     assert not near.limited.any()
     assert not near.slowed.any()
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -51,7 +52,7 @@ def test_what_is_sent_is_the_manuals_example(name: str, monkeypatch: pytest.Monk
     made = bench(small_rig(7))
     sent = heard(made, monkeypatch)
     link = made.link
-    {
+    ways: dict[str, Callable[[], object]] = {
         "ping": lambda: link.ping(1),
         "read": lambda: link.read(1, TABLE["Present Position"]),
         "write": lambda: link.write(1, GOAL, 512),
@@ -59,7 +60,8 @@ def test_what_is_sent_is_the_manuals_example(name: str, monkeypatch: pytest.Monk
         "sync_read": lambda: link.sync_read([1, 2], 132, 4),
         "fast_sync_read": lambda: link.fast_sync_read([3, 7, 4], 132, 4),
         "sync_write": lambda: link.sync_write(GOAL, [(1, 150), (2, 170)]),
-    }[name]()
+    }
+    ways[name]()
     assert sent[0].hex(" ").upper() == EXAMPLES[name]
 
 

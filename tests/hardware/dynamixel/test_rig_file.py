@@ -121,5 +121,5 @@ def test_another_baud_rate_or_rate_is_checked() -> None:
 
 def test_a_rig_is_what_the_file_says() -> None:
     with pytest.raises(ValueError, match="frozen"):
-        small_rig().servos[0].id = 9  # type: ignore[misc]
+        small_rig().servos[0].id = 9
     assert isinstance(small_rig(), Rig)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -18,7 +19,7 @@ def made(seed: int, frames: int = 4, joints: int = 7) -> SkeletonMotion:
     dice = random.Random(seed)
     replaces = dice.random() < 0.5
     chain = [_joint(dice, index, replaces) for index in range(dice.randint(1, joints))]
-    up = dice.choice(["x", "y", "z"])
+    up: Literal["x", "y", "z"] = dice.choice(["x", "y", "z"])
     unit = dice.choice([1.0, 0.01, 0.0254, 0.0254 / 0.45, 0.3])
     radians = dice.choice([1.0, np.pi / 180])
     space = Space(unit, up, radians)

@@ -31,7 +31,7 @@ def test_every_file_is_read_or_refused_with_the_place() -> None:
             assert np.isfinite(motion.values).all(), path
         else:
             assert motion.seen.any(), path
-    for error in refused:
-        assert error.line is not None or error.byte is not None, error
-        assert "\n" not in str(error)
+    for refusal in refused:
+        assert refusal.line is not None or refusal.byte is not None, refusal
+        assert "\n" not in str(refusal)
     assert len(refused) <= len(FILES) / 20, refused

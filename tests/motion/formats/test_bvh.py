@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from enpointe.errors import FormatError
 from enpointe.motion.formats import Content, SkeletonMotion, Space, read, write
-from enpointe.motion.formats.units import INCH
+from enpointe.motion.formats.skeleton import Joint
+from enpointe.motion.formats.units import INCH, stature
 
 from .skeletons import BVH_DOCUMENT, made
 
@@ -69,6 +73,18 @@ def test_the_unit_is_guessed(data_dir: Path, file: str, unit: float) -> None:
     assert isinstance(found.motion, SkeletonMotion)
     assert found.motion.skeleton.space == Space(unit)
     assert any("unit" in warning for warning in found.warnings)
+
+
+@given(st.floats(-10.0, 10.0), st.floats(-10.0, 10.0))
+def test_where_a_figure_stands_in_its_scene_does_not_make_it_taller(x: float, y: float) -> None:
+    body = (
+        Joint("hips", -1),
+        Joint("spine", 0, (0.0, 0.5, 0.0), ends=((0.6, 0.0, 0.0),)),
+        Joint("leg", 0, (0.1, -0.9, 0.0), ends=((0.0, 0.0, 0.2),)),
+    )
+    below = tuple(replace(joint, parent=joint.parent + 1) for joint in body)
+    scene = (Joint("stage", -1), replace(below[0], offset=(x, y, 0.0)), *below[1:])
+    assert stature(scene) == pytest.approx(stature(body))
 
 
 def test_several_orders_in_one_file(data_dir: Path) -> None:

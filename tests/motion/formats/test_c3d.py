@@ -197,6 +197,7 @@ def test_a_file_cut_short_gives_its_whole_frames(made: Path) -> None:
     raw = made.read_bytes()
     made.write_bytes(raw[: len(raw) // 2])
     content = read_c3d(made)
+    assert isinstance(content.motion, MarkerMotion)
     assert 0 < content.motion.frames < 200
     assert any("the file holds" in warning for warning in content.warnings)
 
@@ -221,6 +222,7 @@ def test_a_header_that_makes_no_sense_is_refused_with_its_byte(
 
 def test_header_and_parameters_that_differ_are_told(made: Path) -> None:
     content = read_c3d(patched(made, 2, b"\xff\xff"))
+    assert isinstance(content.motion, MarkerMotion)
     assert content.motion.frames == 200
     assert any("65535 points" in warning for warning in content.warnings)
 
@@ -234,5 +236,6 @@ def test_huge_counts_allocate_nothing(made: Path) -> None:
     patched(made, last, b"\xff\xff\xff\xff")
     patched(made, 8, b"\xff\xff")
     content = read_c3d(made)
+    assert isinstance(content.motion, MarkerMotion)
     assert 200 <= content.motion.frames < 220
     assert any("the file holds" in warning for warning in content.warnings)

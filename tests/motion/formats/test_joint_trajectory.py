@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 from pathlib import Path
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -50,7 +51,7 @@ def test_joints_come_in_the_order_asked(swing: Motion) -> None:
 
 
 @pytest.mark.parametrize("wrong", [{"rate": 0.0}, {"approach": -1.0}, {"rate": float("nan")}])
-def test_no_rate_and_no_approach_are_refused(swing: Motion, wrong: dict[str, float]) -> None:
+def test_no_rate_and_no_approach_are_refused(swing: Motion, wrong: dict[str, Any]) -> None:
     with pytest.raises(MotionError):
         JointTrajectory.of(swing, **wrong)
 

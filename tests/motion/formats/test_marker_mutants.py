@@ -14,7 +14,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from enpointe.errors import FormatError
-from enpointe.motion.formats import Format, Joint, Skeleton, SkeletonMotion, Space, formats
+from enpointe.motion.formats import (
+    Format,
+    Joint,
+    MarkerMotion,
+    Skeleton,
+    SkeletonMotion,
+    Space,
+    formats,
+)
 
 from .making import marker_motion
 from .mutants import binary_mutant, text_mutant
@@ -64,6 +72,7 @@ def taken_or_refused(each: Format, path: Path, raw: bytes) -> None:
         except FormatError as refusal:
             error = refusal
     if error is None:
+        assert isinstance(content.motion, MarkerMotion | SkeletonMotion)
         assert content.motion.frames > 0
         assert np.isfinite(content.motion.rate)
     else:

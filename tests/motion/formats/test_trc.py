@@ -73,6 +73,7 @@ def test_a_file_that_disagrees_with_itself_is_told(
     assert old in BODY
     content = read_trc(written(tmp_path, BODY.replace(old, new)))
     assert any(said in warning for warning in content.warnings), content.warnings
+    assert isinstance(content.motion, MarkerMotion)
     assert content.motion.frames == 2
 
 
@@ -98,9 +99,11 @@ def test_nonsense_is_refused_with_its_line(tmp_path: Path, old: str, new: str, l
 
 def test_a_last_row_that_was_cut_is_left_out(tmp_path: Path) -> None:
     content = read_trc(written(tmp_path, BODY[: BODY.index("1631.528")]))
+    assert isinstance(content.motion, MarkerMotion)
     assert content.motion.frames == 1
     assert any("cut short" in warning for warning in content.warnings)
     content = read_trc(written(tmp_path, BODY.rstrip().rsplit("\n", 1)[0]))
+    assert isinstance(content.motion, MarkerMotion)
     assert content.motion.frames == 1
     assert any("may be cut" in warning for warning in content.warnings)
 

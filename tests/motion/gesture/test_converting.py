@@ -91,7 +91,7 @@ def test_points_among_other_things_are_the_markers() -> None:
     motion, lost = markers_of_scene(scene)
     assert motion.names == ("one:A", "other:A")
     assert motion.space.metres_per_unit == 1.0
-    np.testing.assert_allclose(motion.positions[1], [[6, 7, 8], [0.06, 0.07, 0.08]])
+    np.testing.assert_allclose(motion.positions[1], [[6.0, 7.0, 8.0], [0.06, 0.07, 0.08]])
     assert len(lost) == 1
     assert "f [IV(F), 3Dxyz]" in lost[0]
 

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy.typing import ArrayLike
 
 from enpointe.errors import FormatError, MotionError
 from enpointe.motion.gesture import (
@@ -147,11 +148,12 @@ def test_what_cannot_be_appended_leaves_the_file_as_it_was(tmp_path: Path) -> No
     path = tmp_path / "keys.gst"
     with GestureWriter(path, HAND, encoding=Encoding("int32"), flush_seconds=0) as writer:
         writer.append([1, 2, 3])
-        for wrong, message in (
+        refused: tuple[tuple[ArrayLike, str], ...] = (
             ([1, 2], "must have shape"),
             ([[[1, 2, 3]]], "must have shape"),
-            ([[4, 5, 6], [7, 8, 2.0**31]], "can't hold"),
-        ):
+            ([[4.0, 5.0, 6.0], [7.0, 8.0, 2.0**31]], "can't hold"),
+        )
+        for wrong, message in refused:
             with pytest.raises(MotionError, match=message):
                 writer.append(wrong)
         room = writer.most
@@ -187,7 +189,7 @@ def test_a_recording_never_replaces_another(tmp_path: Path) -> None:
 def test_durable_frames_are_asked_of_the_disk(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    asked = []
+    asked: list[int] = []
     monkeypatch.setattr("enpointe.motion.gesture.writer.os.fsync", asked.append)
     with GestureWriter(tmp_path / "d.gst", HAND, flush_seconds=0, durable=True) as writer:
         writer.append([[1, 2, 3], [4, 5, 6]])

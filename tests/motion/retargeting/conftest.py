@@ -79,10 +79,11 @@ def as_skeleton(
             turns[i, j] = back @ np.array(body.xmat).reshape(3, 3) @ back.T
     joints, columns = [], []
     for j, name in enumerate(listed):
-        parent = -1 if _BODIES[name][1] is None else listed.index(_BODIES[name][1])
+        over = _BODIES[name][1]
+        parent = -1 if over is None else listed.index(over)
         above = turns[:, parent] if parent >= 0 else np.eye(3)
         offset = places[0, j] if parent < 0 else above[0].T @ (places[0, j] - places[0, parent])
-        channels = ("Zrotation", "Xrotation", "Yrotation")
+        channels: tuple[str, ...] = ("Zrotation", "Xrotation", "Yrotation")
         angles = angles_of(Rotation.from_matrix(np.swapaxes(above, -1, -2) @ turns[:, j]), "ZXY")
         end = (0.0, -8.0, 0.0) if name.endswith("Hand") else (0.0, 0.0, 4.0)
         if parent < 0:

@@ -5,10 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import mujoco
+import numpy as np
 import pytest
 
 from enpointe.errors import FormatError, MotionError
-from enpointe.motion.formats import read
+from enpointe.motion.formats import MarkerMotion, read
 from enpointe.motion.retargeting import JointMap, propose_map, retarget
 
 from .conftest import as_skeleton, step_sideways
@@ -48,6 +49,44 @@ def test_marker_sets_are_known_by_their_names(name: str, data_dir: Path) -> None
     if not path.exists():
         pytest.skip("no data here")
     assert not propose_map(read(path)).missing
+
+
+SETS = {
+    "BTS": (
+        "c7, r should, l should, sacrum, r asis, r knee 1, r knee 2, r mall, r heel, r met,"
+        " l asis, l knee 1, l knee 2, l mall, l heel, l met"
+    ),
+    "Helen Hayes of Motion Analysis": (
+        "R.ASIS, L.ASIS, V.Sacral, R.Thigh.Upper, R.Knee.Lat, R.Knee.Med, L.Knee.Lat, L.Knee.Med,"
+        " R.Ankle.Lat, R.Ankle.Med, L.Ankle.Lat, L.Ankle.Med, R.Heel, L.Heel, R.Toe.Tip, L.Toe.Tip,"
+        " R.Toe.Lat, R.Toe.Med, L.Toe.Lat, L.Toe.Med, R.Acromium, L.Acromium, R.Elbow, L.Elbow,"
+        " R.Wrist.Med, R.Wrist.Lat, L.Wrist.Med, L.Wrist.Lat"
+    ),
+    "condyles and malleoli": (
+        "LASI, RASI, LPSI, RPSI, RLFC, RMFC, LLFC, LMFC, RLMAL, RMMAL, LLMAL, LMMAL, RCAL, LCAL,"
+        " RTOE, RMT5, LTOE, LMT5, RACR, LACR, C7"
+    ),
+    "plug-in gait with a sacral wand": "LASI, RASI, VSAC, LKNE, RKNE, LANK, RANK, LTOE, RTOE",
+}
+
+
+@pytest.mark.parametrize("made", SETS)
+def test_marker_sets_of_laboratories_are_known(made: str) -> None:
+    names = tuple(SETS[made].split(", "))
+    markers = MarkerMotion(names, 100.0, np.zeros((2, len(names), 3)))
+    found = propose_map(markers)
+    assert not found.missing
+    for landmark, points in found.points.items():
+        side = landmark.split("_")[0]
+        if side in ("left", "right"):
+            assert all(point.lower().startswith(side[0]) for point in points), landmark
+
+
+def test_a_joint_between_two_markers_is_their_mean() -> None:
+    names = tuple(SETS["Helen Hayes of Motion Analysis"].split(", "))
+    found = propose_map(MarkerMotion(names, 100.0, np.zeros((2, len(names), 3))))
+    assert set(found.points["left_knee"]) == {"L.Knee.Lat", "L.Knee.Med"}
+    assert set(found.points["right_toe"]) == {"R.Toe.Lat", "R.Toe.Med"}
 
 
 def test_a_skeleton_without_names_is_known_by_its_structure(model: mujoco.MjModel) -> None:
