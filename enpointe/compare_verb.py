@@ -83,6 +83,7 @@ def _compared(
             dancer=dancer.anthropometry(),
             stand=rig.stand is not False,
             as_written=rig.as_written,
+            backlash=rig.backlash,
             recording=rig.recording,
             progress=progress,
         )

@@ -123,6 +123,7 @@ def compare_bodies(
     dancer: Anthropometry | None = None,
     stand: bool = True,
     as_written: bool = False,
+    backlash: float = 0.0,
     recording: str | Path | None = None,
     progress: Progress = silent,
 ) -> BodyComparison:
@@ -138,6 +139,7 @@ def compare_bodies(
         dancer: See `perform`.
         stand: Whether a simulated body hangs on a stand, or is on its own feet.
         as_written: Dance it even if the servos can't follow.
+        backlash: Degrees of play in a simulated rig's gears.
         recording: `recording.npz` of an earlier `servo`, instead of a dance now.
         progress: Told how far it is.
 
@@ -167,6 +169,7 @@ def compare_bodies(
         dancer=dancer,
         stand=stand,
         as_written=as_written,
+        backlash=backlash,
         progress=progress,
     )
     return _beside(chosen, done.dancer, done.motion, done.danced, done.recording.fault, done)

@@ -226,6 +226,9 @@ class RigOptions:
     as_written: Annotated[
         bool, typer.Option("--as-written", help="Don't slow down what servos can't follow.")
     ] = False
+    backlash: Annotated[
+        float, typer.Option(help="Play in a simulated rig's gears, degrees; none if left out.")
+    ] = 0.0
     recording: Annotated[
         Path | None,
         typer.Option(help="What the rig did before (recording.npz of servo); nothing is danced."),
@@ -248,6 +251,7 @@ class RigOptions:
             "--port": self.port is not None,
             "--stand and --free": self.stand is not None,
             "--as-written": self.as_written,
+            "--backlash": self.backlash != 0.0,
         }
         for name, given in {**danced, "--recording": self.recording is not None}.items():
             if given and self.rig is None:
