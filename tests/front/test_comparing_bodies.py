@@ -126,7 +126,7 @@ def test_the_command_writes_its_report(
         (("--rig", "op3", "--span", "0", "1"), "--span is for motion files"),
         (("--rig", "op3", "--recording", "r.npz", "--free"), "already danced"),
         (("--rig", "op3", "--recording", "r.npz"), "r.npz"),
-        (("--rig", "op3", "--port", "memory", "--backlash", "0.3"), "backlash"),
+        (("--rig", "op3", "--port", "memory", "--backlash", "0.3"), "gears have play"),
         (("--rig", "nobody"), "no rig 'nobody'"),
         (("--rig", "op3", "--tempo", "60"), "tempo is for scores"),
     ],
