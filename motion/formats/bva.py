@@ -77,9 +77,8 @@ def _sniff(head: bytes) -> bool:
 
 
 def _read(path: Path) -> Content:
-    text = read_text(path)
-    reader = _Reader(path, text.split("\n"))
-    if not text.endswith("\n"):
+    reader = _Reader(path, read_text(path).split("\n"))
+    if reader.lines[-1]:
         reader.warnings.append(CUT)
     segments = reader.segments()
     first = segments[0]

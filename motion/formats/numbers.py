@@ -108,11 +108,12 @@ class Spelled:
 
 
 def blocks(data: bytes, start: int = 0) -> Iterator[bytes]:
-    """Cuts bytes behind line ends into pieces of about `BLOCK`."""
+    """Cuts bytes behind line ends into pieces of about `BLOCK`, smaller ones of a small file."""
+    size = min(BLOCK, max(len(data) // 16, 1 << 14))
     while start < len(data):
         end = len(data)
-        if end - start > BLOCK:
-            newline = data.find(b"\n", start + BLOCK)
+        if end - start > size:
+            newline = data.find(b"\n", start + size)
             end = newline + 1 if newline >= 0 else end
         yield data[start:end]
         start = end
