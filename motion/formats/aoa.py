@@ -81,7 +81,7 @@ def _rows(raw: bytes, start: int, path: Path) -> NDArray[np.float64]:
     even = even_table(raw, start, 3, None)
     if even is not None:
         return even
-    return column_table(decoded(raw[start:]).split("\n"), 3, path, 3, "a marker")
+    return column_table(raw, 3, path, 3, "a marker", start=start)
 
 
 def write_aoa(payload: Payload, path: Path) -> tuple[str, ...]:

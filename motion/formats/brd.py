@@ -15,14 +15,19 @@ from numpy.typing import NDArray
 
 from enpointe.errors import FormatError
 from enpointe.files import write_text
-from enpointe.motion.formats.columns import column_table, number_text, plain_lines
+from enpointe.motion.formats.columns import (
+    line_blocks,
+    lines_table,
+    number_text,
+    plain_lines,
+)
 from enpointe.motion.formats.content import Content, Format, Payload
 from enpointe.motion.formats.fields import loaded_table
 from enpointe.motion.formats.guessing import guessed_space
 from enpointe.motion.formats.holding import left_out, lost_notes, markers_of
 from enpointe.motion.formats.markers import MarkerMotion
 from enpointe.motion.formats.numbers import blocks, tokens
-from enpointe.motion.formats.text import CUT, decoded, read_raw
+from enpointe.motion.formats.text import CUT, read_raw
 
 __all__ = ["BRD", "read_brd", "write_brd"]
 
@@ -47,7 +52,7 @@ def read_brd(path: Path) -> Content:
     cut = bool(raw[raw.rfind(b"\n") + 1 :].strip())
     table = _even_rows(raw)
     if table is None:
-        table = _rows(decoded(raw).split("\n"), path)
+        table = _rows(raw, path)
     del raw
     timed = table.shape[1] == _TIMED - len(_LETTERS)
     _check(table, timed, path)
@@ -163,28 +168,34 @@ def _even_rows(raw: bytes) -> Array | None:
     return table[:filled] if filled else None
 
 
-def _rows(lines: list[str], path: Path) -> Array:
+def _rows(raw: bytes, path: Path) -> Array:
     """Numbers of all rows, the letters left out, and of the times too where a row has none."""
     timed = True
-    for number, line in enumerate(lines, start=1):
-        tokens = line.split()
-        if not tokens:
-            continue
-        if len(tokens) not in (_TIMED, _UNTIMED) or (tokens[2], tokens[6]) != ("P", "Q"):
-            raise FormatError(
-                "a row needs: sample marker P x y z Q w x y z, and perhaps the time",
-                path,
-                line=number,
-            )
-        timed &= len(tokens) == _TIMED
-        del tokens[6], tokens[2]
-        lines[number - 1] = " ".join(tokens)
-    if not timed:
-        lines[:] = [" ".join(line.split()[:9]) for line in lines]
-    table = column_table(lines, 11 if timed else 9, path, 1, "a row", needed=_NEEDED)
+    for first, lines in line_blocks(raw, 0, 1):
+        for number, line in enumerate(lines, start=first):
+            tokens = line.split()
+            if tokens and (
+                len(tokens) not in (_TIMED, _UNTIMED) or (tokens[2], tokens[6]) != ("P", "Q")
+            ):
+                raise FormatError(
+                    "a row needs: sample marker P x y z Q w x y z, and perhaps the time",
+                    path,
+                    line=number,
+                )
+            timed &= not tokens or len(tokens) == _TIMED
+    width = (_TIMED if timed else _UNTIMED) - len(_LETTERS)
+    tables = [np.empty((0, width))]
+    for first, lines in line_blocks(raw, 0, 1):
+        rows = [" ".join(_numbers(line.split())[:width]) for line in lines]
+        tables.append(lines_table(rows, width, path, first, "a row", needed=_NEEDED))
+    table = np.concatenate(tables)
     if not len(table):
         raise FormatError("there are no rows", path, line=1)
     return table
+
+
+def _numbers(tokens: list[str]) -> list[str]:
+    return [token for index, token in enumerate(tokens) if index not in _LETTERS]
 
 
 def _check(table: Array, timed: bool, path: Path) -> None:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import tracemalloc
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from enpointe.errors import FormatError
 from enpointe.motion.formats import (
     Joint,
     MarkerMotion,
@@ -24,10 +26,12 @@ _SIX = tuple(f"{axis}{kind}" for kind in ("position", "rotation") for axis in "X
 
 
 def peak_of_reading(path: Path) -> float:
-    """Most memory that reading has at a time, in sizes of the file."""
-    read(path)
+    """Most memory that reading has at a time, in sizes of the file; read or refused."""
+    with suppress(FormatError):
+        read(path)
     tracemalloc.start()
-    read(path)
+    with suppress(FormatError):
+        read(path)
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     return peak / path.stat().st_size
@@ -49,6 +53,36 @@ def captured_skeleton() -> SkeletonMotion:
 def test_markers(tmp_path: Path, suffix: str) -> None:
     path = tmp_path / f"markers{suffix}"
     write(captured_markers(600), path)
+    assert peak_of_reading(path) < 4
+
+
+@pytest.mark.parametrize("suffix", [".aoa", ".brd", ".csm", ".csv", ".trc"])
+def test_markers_with_gaps_and_a_fault_far_down(tmp_path: Path, suffix: str) -> None:
+    """Rows that only the slow reader can tell, and the line of the one that is none."""
+    path = tmp_path / f"markers{suffix}"
+    motion = captured_markers(600)
+    motion.positions[::7, :9] = np.nan
+    write(motion, path)
+    lines = path.read_bytes().split(b"\n")
+    fault = 4 * len(lines) // 5
+    lines[fault] = lines[fault][:-1] + b"x"
+    path.write_bytes(b"\n".join(lines))
+    with pytest.raises(FormatError) as caught:
+        read(path)
+    assert caught.value.line == fault + 1
+    assert peak_of_reading(path) < 4
+
+
+@pytest.mark.parametrize("suffix", [".aoa", ".csm", ".csv", ".trc"])
+def test_markers_with_gaps(tmp_path: Path, suffix: str) -> None:
+    """All of the gaps come back, wherever a block of the file ends."""
+    path = tmp_path / f"markers{suffix}"
+    motion = captured_markers(600)
+    motion.positions[::7, :9] = np.nan
+    write(motion, path)
+    again = read(path).motion
+    assert isinstance(again, MarkerMotion)
+    np.testing.assert_array_equal(again.positions, motion.positions)
     assert peak_of_reading(path) < 4
 
 
