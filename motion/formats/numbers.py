@@ -229,7 +229,8 @@ def _one_by_one(
                 values[index] = float(word)
             except ValueError:
                 break
-    values[[b"_" in word for word in words]] = np.nan
+    if b"_" in data:
+        values[[b"_" in word for word in words]] = np.nan
     bad = np.flatnonzero(~np.isfinite(values))
     return values, int(bad[0]) if len(bad) else None
 
