@@ -121,6 +121,8 @@ class _Reader:
         found = []
         while self.skip_blank():
             found.append(self.segment())
+        if not found:
+            raise self.error("'Segment:' expected, and there is nothing but blanks", 1)
         return found
 
     def skip_blank(self) -> bool:
