@@ -46,6 +46,7 @@ _LOADTXT = (
     "import numpy\nskipped = 1 + [line[:10] for line in open(path)].index('Frame Time')",
     "numpy.loadtxt(path, skiprows=skipped)",
 )
+_ASFAMC = ("import asfamcparser", "asfamcparser.ParseAMC(path)")
 _PLAIN_AMC = (
     "",
     """
@@ -65,9 +66,9 @@ _READERS = {
         "numpy.loadtxt, numbers only": _LOADTXT,
         "pandas, numbers only": (_PANDAS, _FLOOR),
     },
-    "amc": {"enpointe": _OURS, "float and split": _PLAIN_AMC},
+    "amc": {"enpointe": _OURS, "asfamc-parser": _ASFAMC, "float and split": _PLAIN_AMC},
 }
-_NEEDS = {"pybvh": "pybvh", "pandas, numbers only": "pandas"}
+_NEEDS = {"pybvh": "pybvh", "pandas, numbers only": "pandas", "asfamc-parser": "asfamcparser"}
 _SIZES = {"4 MB": 4e6, "40 MB": 40e6}
 
 
@@ -86,12 +87,15 @@ def made_bvh(source: Path, size: float, folder: Path) -> Path:
 
 
 def made_amc(source: Path, size: float, folder: Path) -> Path:
-    """An AMC of that many bytes, its frames counted on, its skeleton beside it."""
+    """An AMC of that many bytes, its frames counted on, its skeleton beside it.
+
+    Comments above the flags are left out: asfamc-parser can't read a file that has some.
+    """
     head, *poses = re.split(r"^\d+\n", source.read_text(), flags=re.MULTILINE)
     count = max(1, round(size / (sum(map(len, poses)) / len(poses))))
     path = folder / f"{size / 1e6:.0f}.amc"
     with path.open("w") as file:
-        file.write(head)
+        file.writelines(line for line in head.splitlines(keepends=True) if line[0] != "#")
         file.writelines(f"{i + 1}\n{poses[i % len(poses)]}" for i in range(count))
     path.with_suffix(".asf").write_bytes((source.parent / "05.asf").read_bytes())
     return path

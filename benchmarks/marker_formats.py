@@ -22,6 +22,7 @@ import subprocess
 import sys
 import warnings
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import perf_counter
@@ -47,8 +48,10 @@ PEERS = {
 READS = 4
 
 
-def moved(frames: int, markers: int, *, gaps: bool = False, channels: int = 0) -> MarkerMotion:
-    """Markers that walk about at random, the same each time."""
+def moved(
+    frames: int, markers: int, *, gaps: bool = False, channels: int = 0, measured: bool = False
+) -> MarkerMotion:
+    """Markers that walk about at random, the same each time; measured, with their residuals."""
     rng = np.random.default_rng(20)
     steps = rng.normal(0, 3, (frames, markers, 3))
     steps[0] += rng.uniform(-900, 900, (markers, 3))
@@ -62,21 +65,29 @@ def moved(frames: int, markers: int, *, gaps: bool = False, channels: int = 0) -
         names = tuple(f"A{i}" for i in range(channels))
         analog = Analog(names, ("V",) * channels, 1080.0, values)
     names = tuple(f"M{i}" for i in range(markers))
-    return MarkerMotion(names, 120.0, positions, Space(0.001, "z"), analog=analog)
+    motion = MarkerMotion(names, 120.0, positions, Space(0.001, "z"), analog=analog)
+    if not measured:
+        return motion
+    steps = rng.integers(1, 127, (2, frames, markers))
+    residuals = np.where(motion.seen, steps[0] * 0.125, np.nan).astype(np.float32)
+    return replace(motion, residuals=residuals, cameras=(steps[1] * motion.seen).astype(np.uint8))
 
 
 def made(folder: Path) -> list[Path]:
-    """Files of the sizes that reference figures of the peers are known for."""
+    """Files of some 4 and 40 MB, and of sizes that reference figures of the peers are known for."""
     from enpointe.motion.formats.c3d import write_c3d
     from enpointe.motion.formats.csm import write_csm
     from enpointe.motion.formats.trc import write_trc
 
     write_trc(moved(2105, 44), folder / "2105x44.trc")
     write_trc(moved(2105, 44, gaps=True), folder / "2105x44 gaps.trc")
-    write_trc(moved(21050, 44), folder / "21050x44.trc")
+    write_trc(moved(29000, 44), folder / "29000x44.trc")
     write_csm(moved(2105, 44), folder / "2105x44.csm")
     write_c3d(moved(5920, 44), folder / "5920x44 real.c3d", scale=0.0)
+    write_c3d(moved(59200, 44), folder / "59200x44 real.c3d", scale=0.0)
     write_c3d(moved(5920, 44), folder / "5920x44 integer.c3d", scale=0.125)
+    measured = moved(5920, 44, gaps=True, measured=True)
+    write_c3d(measured, folder / "5920x44 integer, residuals.c3d", scale=0.125)
     write_c3d(moved(1577, 74, channels=36), folder / "1577x74+36 real.c3d", scale=0.0)
     return sorted(folder.iterdir())
 

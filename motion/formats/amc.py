@@ -309,15 +309,14 @@ class _Body:
 def _quick_table(raw: bytes, start: int, pattern: _Pattern) -> NDArray[np.float64] | None:
     """(T, 1 + values) of frames that all follow a pattern: the number of each, then its values."""
     per_line = np.array([1, *(1 + count for count in pattern.counts)])
-    is_name = np.ones(pattern.words, np.bool_)
-    is_name[0] = False
-    firsts = np.cumsum(per_line)[:-1]
-    is_name[:] = False
-    is_name[firsts] = True
+    is_name = np.zeros(pattern.words, np.bool_)
+    is_name[np.cumsum(per_line)[:-1]] = True
     which = np.cumsum(is_name) - 1
     spelled = Spelled.of([name.encode() for name in pattern.names])
-    done_words = done_lines = 0
-    found = []
+    done_words = done_lines = filled = 0
+    width = pattern.words - len(pattern.names)
+    frames = min(raw.count(b"\n", start) // len(per_line), (len(raw) - start) // pattern.words) + 1
+    table = np.empty(frames * width)
     for block in blocks(raw, start):
         words = tokens(block)
         lines = words.per_line()
@@ -332,12 +331,13 @@ def _quick_table(raw: bytes, start: int, pattern: _Pattern) -> NDArray[np.float6
         values, bad = parsed(words, np.flatnonzero(~is_name[places]))
         if bad is not None:
             return None
-        found.append(values)
+        table[filled : filled + len(values)] = values
+        filled += len(values)
         done_words += len(places)
         done_lines += len(lines)
     if not done_words or done_words % pattern.words:
         return None
-    return np.concatenate(found).reshape(-1, pattern.words - len(pattern.names))
+    return table[:filled].reshape(-1, width)
 
 
 def _write(payload: Payload, path: Path) -> tuple[str, ...]:

@@ -8,14 +8,23 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
 from enpointe.errors import FormatError
 from enpointe.files import write_text
-from enpointe.motion.formats.columns import column_table, number_text, settle_gaps
+from enpointe.motion.formats.columns import (
+    column_table,
+    number_text,
+    plain_lines,
+    settle_gaps,
+)
 from enpointe.motion.formats.content import Content, Format, Payload
+from enpointe.motion.formats.fields import even_table
 from enpointe.motion.formats.guessing import guessed_space
 from enpointe.motion.formats.holding import left_out, lost_notes, markers_of
 from enpointe.motion.formats.markers import MarkerMotion
-from enpointe.motion.formats.text import CUT, finite_number, read_text, whole_number
+from enpointe.motion.formats.text import CUT, decoded, finite_number, read_raw, whole_number
 
 __all__ = ["AOA", "read_aoa", "write_aoa"]
 
@@ -31,7 +40,9 @@ def read_aoa(path: Path) -> Content:
     Raises:
         FormatError: No AOA file, or one whose rows are no whole frames.
     """
-    lines = read_text(path).split("\n")
+    raw = plain_lines(read_raw(path))
+    start = raw.find(b"\n", raw.find(b"\n") + 1) + 1 or len(raw)
+    lines = decoded(raw[:start]).split("\n")
     counts = _COUNTS.fullmatch(lines[1]) if len(lines) > 1 else None
     if counts is None:
         raise FormatError(
@@ -43,16 +54,14 @@ def read_aoa(path: Path) -> Content:
     if not markers or rate <= 0:
         raise FormatError("nummarkers and hz must be above 0", path, line=2)
     comment = lines[0].strip()
-    points = column_table(lines[2:], 3, path, 3, "a marker")
-    last = len(lines)
-    cut = bool(lines[-1].strip())
-    del lines
+    points = _rows(raw, start, path)
     whole, rest = divmod(len(points), markers)
     if not whole:
+        last = 1 + raw.count(b"\n")
         raise FormatError(f"{len(points)} rows are no frame of {markers} markers", path, line=last)
     warnings: list[str] = []
     lost: list[str] = []
-    if cut:
+    if raw[raw.rfind(b"\n") + 1 :].strip():
         warnings.append(CUT)
     if whole != declared or rest:
         warnings.append(f"frames says {declared}, and there are {whole} whole ones")
@@ -65,6 +74,14 @@ def read_aoa(path: Path) -> Content:
     notes = {_COMMENT: comment} if comment else {}
     motion = MarkerMotion(names, rate, positions, space, notes=notes)
     return Content(motion, (*warnings, *guesses), tuple(lost))
+
+
+def _rows(raw: bytes, start: int, path: Path) -> NDArray[np.float64]:
+    """The points below the head; line by line where there is something to tell."""
+    even = even_table(raw, start, 3, None)
+    if even is not None:
+        return even
+    return column_table(raw, 3, path, 3, "a marker", start=start)
 
 
 def write_aoa(payload: Payload, path: Path) -> tuple[str, ...]:

@@ -7,6 +7,7 @@ the inch, where the points do not tell another (Ascension, Flock of Birds guide,
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 
 import numpy as np
@@ -14,17 +15,26 @@ from numpy.typing import NDArray
 
 from enpointe.errors import FormatError
 from enpointe.files import write_text
-from enpointe.motion.formats.columns import column_table, number_text
+from enpointe.motion.formats.columns import (
+    line_blocks,
+    lines_table,
+    number_text,
+    plain_lines,
+)
 from enpointe.motion.formats.content import Content, Format, Payload
+from enpointe.motion.formats.fields import loaded_table
 from enpointe.motion.formats.guessing import guessed_space
 from enpointe.motion.formats.holding import left_out, lost_notes, markers_of
 from enpointe.motion.formats.markers import MarkerMotion
-from enpointe.motion.formats.text import CUT, read_text
+from enpointe.motion.formats.numbers import blocks, tokens
+from enpointe.motion.formats.text import CUT, read_raw
 
 __all__ = ["BRD", "read_brd", "write_brd"]
 
 Array = NDArray[np.float64]
 _TIMED, _UNTIMED = 13, 11
+_LETTERS = [2, 6]
+_NEEDED = 5
 _USUAL_RATE = 30.0
 _INCH = 0.0254
 _FIRST_TIME = "time of the first sample"
@@ -38,10 +48,14 @@ def read_brd(path: Path) -> Content:
     Raises:
         FormatError: No BRD file, a row that can't be told, or a marker twice in a sample.
     """
-    lines = read_text(path).split("\n")
-    table, timed = _rows(lines, path)
-    cut = bool(lines[-1].strip())
-    del lines
+    raw = plain_lines(read_raw(path))
+    cut = bool(raw[raw.rfind(b"\n") + 1 :].strip())
+    table = _even_rows(raw)
+    if table is None:
+        table = _rows(raw, path)
+    del raw
+    timed = table.shape[1] == _TIMED - len(_LETTERS)
+    _check(table, timed, path)
     samples, rows = np.unique(table[:, 0], return_inverse=True)
     markers, columns = np.unique(table[:, 1], return_inverse=True)
     cells = len(samples) * len(markers)
@@ -122,34 +136,75 @@ def _sniff(start: bytes) -> bool:
     return len(first) in (_TIMED, _UNTIMED) and first[2:3] == [b"P"] and first[6:7] == [b"Q"]
 
 
-def _rows(lines: list[str], path: Path) -> tuple[Array, bool]:
-    """Numbers of all rows, the letters left out, and whether all have times."""
-    timed = True
-    for number, line in enumerate(lines, start=1):
-        tokens = line.split()
-        if not tokens:
+def _even_rows(raw: bytes) -> Array | None:
+    """Numbers of all rows, the letters left out, block by block; None where rows differ in kind."""
+    # A row has a byte and a blank for each word: never more room than there is text.
+    most = min(raw.count(b"\n"), len(raw) // (2 * _UNTIMED)) + 1
+    table, filled = np.empty((0, 0)), 0
+    for block in blocks(raw):
+        words = tokens(block)
+        counts = words.per_line()
+        counts = counts[counts > 0]
+        if not len(counts):
             continue
-        if len(tokens) not in (_TIMED, _UNTIMED) or (tokens[2], tokens[6]) != ("P", "Q"):
-            raise FormatError(
-                "a row needs: sample marker P x y z Q w x y z, and perhaps the time",
-                path,
-                line=number,
-            )
-        timed &= len(tokens) == _TIMED
-        del tokens[6], tokens[2]
-        lines[number - 1] = " ".join(tokens)
-    if not timed:
-        lines[:] = [" ".join(line.split()[:9]) for line in lines]
-    table = column_table(lines, 11 if timed else 9, path, 1, "a row", needed=5)
+        width = int(counts[0])
+        if width not in (_TIMED, _UNTIMED) or (counts != width).any():
+            return None
+        if not filled:
+            table = np.empty((most, width - len(_LETTERS)))
+        letters = words.starts.reshape(-1, width)[:, _LETTERS]
+        long = words.ends.reshape(-1, width)[:, _LETTERS] - letters != 1
+        if long.any() or (words.data[letters] != list(b"PQ")).any():
+            return None
+        plain = words.data.copy()
+        plain[letters] = ord(" ")
+        part = loaded_table(io.BytesIO(plain.tobytes()), table.shape[1], None)
+        if part is None or len(part) != len(counts) or np.isinf(part).any():
+            return None
+        if np.isnan(part[:, :_NEEDED]).any():
+            return None
+        table[filled : filled + len(part)] = part
+        filled += len(part)
+    return table[:filled] if filled else None
+
+
+def _rows(raw: bytes, path: Path) -> Array:
+    """Numbers of all rows, the letters left out, and of the times too where a row has none."""
+    timed = True
+    for first, lines in line_blocks(raw, 0, 1):
+        for number, line in enumerate(lines, start=first):
+            tokens = line.split()
+            if tokens and (
+                len(tokens) not in (_TIMED, _UNTIMED) or (tokens[2], tokens[6]) != ("P", "Q")
+            ):
+                raise FormatError(
+                    "a row needs: sample marker P x y z Q w x y z, and perhaps the time",
+                    path,
+                    line=number,
+                )
+            timed &= not tokens or len(tokens) == _TIMED
+    width = (_TIMED if timed else _UNTIMED) - len(_LETTERS)
+    tables = [np.empty((0, width))]
+    for first, lines in line_blocks(raw, 0, 1):
+        rows = [" ".join(_numbers(line.split())[:width]) for line in lines]
+        tables.append(lines_table(rows, width, path, first, "a row", needed=_NEEDED))
+    table = np.concatenate(tables)
     if not len(table):
         raise FormatError("there are no rows", path, line=1)
+    return table
+
+
+def _numbers(tokens: list[str]) -> list[str]:
+    return [token for index, token in enumerate(tokens) if index not in _LETTERS]
+
+
+def _check(table: Array, timed: bool, path: Path) -> None:
     numbers = table[:, :2]
     if (numbers != np.floor(numbers)).any() or (np.abs(numbers) > 1e9).any():
         row = int(np.argmax((numbers != np.floor(numbers)).any(axis=1)))
         raise FormatError("samples and markers must have whole numbers", path, line=row + 1)
     if timed and (np.isnan(table[:, 9:]).any() or (np.abs(table[:, 9:]) > 1e12).any()):
         raise FormatError("a time must be seconds and microseconds", path, line=1)
-    return table, timed
 
 
 def _rate(

@@ -77,9 +77,8 @@ def _sniff(head: bytes) -> bool:
 
 
 def _read(path: Path) -> Content:
-    text = read_text(path)
-    reader = _Reader(path, text.split("\n"))
-    if not text.endswith("\n"):
+    reader = _Reader(path, read_text(path).split("\n"))
+    if reader.lines[-1]:
         reader.warnings.append(CUT)
     segments = reader.segments()
     first = segments[0]
@@ -122,6 +121,8 @@ class _Reader:
         found = []
         while self.skip_blank():
             found.append(self.segment())
+        if not found:
+            raise self.error("'Segment:' expected, and there is nothing but blanks", 1)
         return found
 
     def skip_blank(self) -> bool:

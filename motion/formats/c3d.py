@@ -214,15 +214,14 @@ def _motion(
 ) -> MarkerMotion:
     start = parameters.whole("TRIAL:ACTUAL_START_FIELD")
     labels = parameters.strings("POINT:LABELS")[: layout.points]
-    measured = bool((frames.residuals > 0).any() or frames.cameras.any())
     return MarkerMotion(
         _names(labels, layout.points, "marker"),
         rate,
         frames.positions,
         _space(parameters, frames.positions, warnings),
         header.first if start is None else start,
-        residuals=frames.residuals if measured else None,
-        cameras=frames.cameras if measured else None,
+        residuals=frames.residuals,
+        cameras=frames.cameras,
         analog=_analog(parameters, layout, rate, frames),
         labels=_labels(header, parameters),
         notes=_notes(header, parameters, encoding, layout),

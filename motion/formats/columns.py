@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from enpointe.errors import FormatError
 from enpointe.motion.formats.fields import Fields, fields_table
+from enpointe.motion.formats.numbers import blocks
 from enpointe.motion.formats.text import CUT, decoded
 
 __all__ = [
@@ -19,6 +20,8 @@ __all__ = [
     "MOST_MARKERS",
     "column_table",
     "delimited_rows",
+    "line_blocks",
+    "lines_table",
     "number_text",
     "plain_lines",
     "settle_gaps",
@@ -30,7 +33,59 @@ MOST_MARKERS = 100_000
 MISSING = frozenset({"", "nan", "-nan", "+nan", "n/a", "dropout"})
 
 
+def line_blocks(data: bytes, start: int, first_line: int) -> Iterator[tuple[int, list[str]]]:
+    r"""The lines of a file some at a time, since a list of all is several times as large.
+
+    Args:
+        data: The file, lines ending with \n.
+        start: Where to start.
+        first_line: Number in the file of the line there, from 1.
+
+    Yields:
+        The number of the first of some lines, and those; one more, which is empty, at their end.
+    """
+    for block in blocks(data, start):
+        lines = decoded(block).split("\n")
+        yield first_line, lines
+        first_line += len(lines) - 1
+
+
 def column_table(
+    data: bytes,
+    width: int,
+    path: Path,
+    first_line: int,
+    what: str,
+    *,
+    start: int = 0,
+    needed: int = 0,
+) -> Array:
+    r"""The rest of a file, `width` columns on a line, as `lines_table` takes them.
+
+    Args:
+        data: The file, lines ending with \n.
+        width: Columns in a line.
+        path: The file, for messages.
+        first_line: Line of the first in the file, from 1.
+        what: What a line is, for messages.
+        start: Where to start.
+        needed: Columns at the start that have to be there.
+
+    Raises:
+        FormatError: With the line.
+    """
+    return np.concatenate(
+        [
+            np.empty((0, width)),
+            *(
+                lines_table(lines, width, path, line, what, needed=needed)
+                for line, lines in line_blocks(data, start, first_line)
+            ),
+        ]
+    )
+
+
+def lines_table(
     lines: list[str],
     width: int,
     path: Path,
@@ -103,17 +158,27 @@ def delimited_rows(
         found = fields_table(data, start, width, delimiter, needed)
         if found is not None:
             return replace(found, warnings=warnings)
-    lines = decoded(data[start:]).split("\n")
-    longer, shorter = 0, 0
-    if delimiter is not None:
-        for index, line in enumerate(lines):
-            if line.count(delimiter) >= width:
-                parts = line.split(delimiter, width)
-                lines[index] = delimiter.join(parts[:-1])
-                longer += bool(parts[-1].strip())
-        shorter = sum(line.count(delimiter) < width - 1 for line in lines if line.strip())
-    table = column_table(lines, width, path, skipped + 1, what, delimiter=delimiter, needed=needed)
-    return Fields(table, longer, shorter, warnings)
+    longer = shorter = 0
+    tables = [np.empty((0, width))]
+    for number, lines in line_blocks(data, start, skipped + 1):
+        if delimiter is not None:
+            longer += _shortened(lines, width, delimiter)
+            shorter += sum(line.count(delimiter) < width - 1 for line in lines if line.strip())
+        tables.append(
+            lines_table(lines, width, path, number, what, delimiter=delimiter, needed=needed)
+        )
+    return Fields(np.concatenate(tables), longer, shorter, warnings)
+
+
+def _shortened(lines: list[str], width: int, delimiter: str) -> int:
+    """Takes what stands beyond the width out of the lines, and counts those that had some."""
+    longer = 0
+    for index, line in enumerate(lines):
+        if line.count(delimiter) >= width:
+            parts = line.split(delimiter, width)
+            lines[index] = delimiter.join(parts[:-1])
+            longer += bool(parts[-1].strip())
+    return longer
 
 
 def _whole_lines(data: bytes, width: int, delimiter: str | None) -> tuple[bytes, tuple[str, ...]]:

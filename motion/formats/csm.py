@@ -27,6 +27,7 @@ from enpointe.motion.formats.fields import even_table
 from enpointe.motion.formats.guessing import guessed_space
 from enpointe.motion.formats.holding import left_out, markers_of, plain_names
 from enpointe.motion.formats.markers import MarkerMotion
+from enpointe.motion.formats.numbers import blocks
 from enpointe.motion.formats.text import (
     CUT,
     decoded,
@@ -159,8 +160,12 @@ def _table(raw: bytes, skipped: int, width: int, path: Path) -> NDArray[np.float
         return table
     if not _GAP.search(raw, start):
         return number_block(raw, width, path, skipped + 1, "a frame", start)
-    rows = decoded(_DROPOUT.sub(b" nan nan nan ", raw[start:])).split("\n")
-    return column_table(rows, width, path, skipped + 1, "a frame", needed=1)
+    tables, line = [np.empty((0, width))], skipped + 1
+    for block in blocks(raw, start):
+        rows = _DROPOUT.sub(b" nan nan nan ", block)
+        tables.append(column_table(rows, width, path, line, "a frame", needed=1))
+        line += block.count(b"\n")
+    return np.concatenate(tables)
 
 
 def _rate(sections: dict[str, tuple[int, list[str]]], path: Path) -> tuple[float, list[str]]:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from enpointe.motion.formats.numbers import Tokens, blocks, parsed, tokens
 
-__all__ = ["Fields", "even_table", "fields_table"]
+__all__ = ["Fields", "even_table", "fields_table", "loaded_table"]
 
 Array = NDArray[np.float64]
 _NEWLINE = 10
@@ -83,7 +83,7 @@ def even_table(data: bytes, start: int, width: int, delimiter: str | None) -> Ar
     """
     file = io.BytesIO(data)
     file.seek(start)
-    table = _loaded(file, width, delimiter)
+    table = loaded_table(file, width, delimiter)
     if table is None and delimiter is not None:
         table = _filled(data, start, width, delimiter)
     return None if table is None or np.isinf(table).any() else table
@@ -97,7 +97,7 @@ def _filled(data: bytes, start: int, width: int, delimiter: str) -> Array | None
         ends = np.flatnonzero((codes == _NEWLINE) | (codes == ord(delimiter)))
         gaps = np.diff(ends, prepend=-1) == 1
         filled = np.insert(codes, ends[gaps], _ZERO)
-        part = _loaded(io.BytesIO(filled.tobytes()), width, delimiter)
+        part = loaded_table(io.BytesIO(filled.tobytes()), width, delimiter)
         if part is None or part.size != len(gaps):
             return None
         part.ravel()[gaps] = np.nan
@@ -105,7 +105,8 @@ def _filled(data: bytes, start: int, width: int, delimiter: str) -> Array | None
     return np.concatenate(parts) if parts else None
 
 
-def _loaded(file: io.BytesIO, width: int, delimiter: str | None) -> Array | None:
+def loaded_table(file: io.BytesIO, width: int, delimiter: str | None) -> Array | None:
+    """Lines of `width` numbers, nan and infinities too; None where they are not that."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")

@@ -70,9 +70,9 @@ def fitted(movement: Movement, kinds: Collection[AnyKind]) -> tuple[Movement, tu
     if isinstance(movement, Scene) and "markers" in kinds:
         return markers_of_scene(movement)
     wanted = " or ".join(_WORDS[kind] for kind in kinds)
-    raise MotionError(
-        f"{_WORDS[own]} does not become {wanted} by conversion; it must be put on a body first"
-    )
+    captured = isinstance(movement, SkeletonMotion | MarkerMotion)
+    way = "; put it on the dancer first (--on-dancer)" if captured else ""
+    raise MotionError(f"{_WORDS[own]} does not become {wanted} by conversion{way}")
 
 
 def _scene(motion: Motion) -> tuple[Scene, tuple[str, ...]]:

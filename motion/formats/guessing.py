@@ -90,11 +90,10 @@ def _guessed_unit(positions: Array, axis: int, usual: float) -> float:
 def _ranges(positions: Array) -> tuple[Array, Array]:
     """Lowest and highest coordinates, (3,) each, typical for a frame."""
     few = positions[:: max(len(positions) // _LOOKED_AT, 1)]
-    whole = np.any(np.all(np.isfinite(few), axis=2), axis=1)
-    seen: Array = few[whole]
-    if not seen.size:
+    known = np.isfinite(few)
+    whole = np.any(np.all(known, axis=2), axis=1)
+    if not whole.any():
         return np.full(3, np.nan), np.full(3, np.nan)
-    known = np.isfinite(seen)
-    low = np.where(known, seen, np.inf).min(axis=1)
-    high = np.where(known, seen, -np.inf).max(axis=1)
+    low = few.min(axis=1, initial=np.inf, where=known)[whole]
+    high = few.max(axis=1, initial=-np.inf, where=known)[whole]
     return np.median(low, axis=0), np.median(high, axis=0)

@@ -8,6 +8,8 @@ length of its bone along BoneLengthAxis. Motion Analysis writes 9999999 where it
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal, cast
@@ -24,7 +26,7 @@ from enpointe.motion.formats.space import DEGREES, Space
 from enpointe.motion.formats.text import (
     CUT,
     finite_number,
-    number_table,
+    number_block,
     read_text,
     refuse_merge_marks,
     whole_number,
@@ -34,6 +36,8 @@ from enpointe.motion.formats.units import INCH
 __all__ = ["GTR", "HTR"]
 
 _GLOBAL = "global"
+_COMMENT = re.compile(r"#[^\n]*")
+_SECTION = re.compile(r"^[^\S\n]*\[([^\n]*)\][^\S\n]*$", re.MULTILINE)
 _UNITS = {
     "mm": 0.001,
     "millimeters": 0.001,
@@ -78,7 +82,20 @@ def _file_type(head: bytes) -> bytes:
 
 
 def _read(path: Path) -> Content:
-    return _Reader(path, read_text(path).split("\n")).content()
+    return _Reader(path, read_text(path)).content()
+
+
+@dataclass(frozen=True, slots=True)
+class _Section:
+    """A section's name, and where what is in it stands: characters, and the line of the first."""
+
+    name: str
+    start: int
+    end: int
+    line: int
+
+    def __len__(self) -> int:
+        return self.end - self.start
 
 
 @dataclass
@@ -89,38 +106,58 @@ class _Base:
 
 
 class _Reader:
-    """Takes an HTR or GTR file section by section."""
+    """Takes an HTR or GTR file section by section.
 
-    def __init__(self, path: Path, lines: list[str]) -> None:
+    The text stays in one piece: a list of its lines would be several times as large.
+    """
+
+    def __init__(self, path: Path, text: str) -> None:
         self.path = path
-        self.lines = [line.split("#", 1)[0].strip() for line in lines]
-        self.lost = ("comments",) if any("#" in line for line in lines) else ()
+        self.lost = ("comments",) if "#" in text else ()
+        self.text = _COMMENT.sub("", text) if self.lost else text
         self.sections = self.split()
         self.warnings: list[str] = []
 
-    def split(self) -> dict[str, tuple[int, int]]:
-        """Each section's name and the lines, from 0, that are in it."""
-        starts: list[tuple[str, int]] = []
-        for index, line in enumerate(self.lines):
-            if line.startswith("[") and line.endswith("]"):
-                starts.append((line[1:-1].strip(), index))
-            elif line and not starts:
-                refuse_merge_marks(line, self.path, index + 1)
-                raise self.error(f"[Header] expected, got {line[:40]!r}", index + 1)
-        if not starts:
-            raise self.error("[Header] expected, and there is nothing but comments", 1)
-        found: dict[str, tuple[int, int]] = {}
-        ends = [index for _, index in starts[1:]] + [len(self.lines)]
-        for (name, start), end in zip(starts, ends, strict=True):
-            key = _plain(name)
-            key = key if key in ("header", "segmentnames&hierarchy", "baseposition") else name
-            if _plain(name) == "endoffile":
+    def split(self) -> dict[str, _Section]:
+        """The sections by name."""
+        starts = self.starts()
+        found: dict[str, _Section] = {}
+        for each in starts:
+            key = _plain(each.name)
+            if key == "endoffile":
                 break
+            key = key if key in ("header", "segmentnames&hierarchy", "baseposition") else each.name
             if key in found:
-                raise self.error(f"[{name[:40]}] for the second time", start + 1)
-            found[key] = (start + 1, end)
-        self.whole = _plain(starts[-1][0]) == "endoffile"
+                raise self.error(f"[{each.name[:40]}] for the second time", each.line - 1)
+            found[key] = each
+        self.whole = _plain(starts[-1].name) == "endoffile"
         return found
+
+    def starts(self) -> list[_Section]:
+        """Every section, in the file's order."""
+        found: list[_Section] = []
+        marks = list(_SECTION.finditer(self.text))
+        before = _Section("", 0, marks[0].start() if marks else len(self.text), 1)
+        for line, text in self.lines_of(before):
+            refuse_merge_marks(text, self.path, line)
+            raise self.error(f"[Header] expected, got {text[:40]!r}", line)
+        if not marks:
+            raise self.error("[Header] expected, and there is nothing but comments", 1)
+        at, line = 0, 2
+        ends = [mark.start() for mark in marks[1:]] + [len(self.text)]
+        for mark, end in zip(marks, ends, strict=True):
+            line += self.text.count("\n", at, mark.start())
+            at = mark.start()
+            found.append(_Section(mark[1].strip(), min(mark.end() + 1, end), end, line))
+        return found
+
+    def lines_of(self, section: _Section | None) -> Iterator[tuple[int, str]]:
+        """Number and text of each line of a section that is not blank."""
+        if section is not None:
+            text = self.text[section.start : section.end]
+            for number, line in enumerate(text.split("\n"), start=section.line):
+                if line.strip():
+                    yield number, line.strip()
 
     def content(self) -> Content:
         header = self.header()
@@ -147,14 +184,12 @@ class _Reader:
     def header(self) -> dict[str, tuple[str, str, int]]:
         """Name as written, value and line of each setting, by its name in small letters."""
         found: dict[str, tuple[str, str, int]] = {}
-        for index in range(*self.sections.get("header", (0, 0))):
-            words = self.lines[index].split()
-            if not words:
-                continue
-            refuse_merge_marks(words[0], self.path, index + 1)
+        for line, text in self.lines_of(self.sections.get("header")):
+            words = text.split()
+            refuse_merge_marks(words[0], self.path, line)
             if words[0].lower() in found:
-                raise self.error(f"{words[0][:40]} for the second time", index + 1)
-            found[words[0].lower()] = (words[0], " ".join(words[1:]), index + 1)
+                raise self.error(f"{words[0][:40]} for the second time", line)
+            found[words[0].lower()] = (words[0], " ".join(words[1:]), line)
         for key in _NEEDED:
             if key not in found:
                 raise self.error(f"[Header] lacks {key}: is the file whole?", 1)
@@ -168,19 +203,17 @@ class _Reader:
 
     def bases(self) -> dict[str, _Base]:
         found: dict[str, _Base] = {}
-        for index in range(*self.sections.get("baseposition", (0, 0))):
-            words = self.lines[index].replace(",", " ").split()
-            if not words:
-                continue
+        for line, text in self.lines_of(self.sections.get("baseposition")):
+            words = text.replace(",", " ").split()
             name = " ".join(words[:-7])
             if not name or name in found:
-                raise self.error("a segment's name, unlike the others, and 7 numbers", index + 1)
-            base = _Base(index + 1, words[-7:])
+                raise self.error("a segment's name, unlike the others, and 7 numbers", line)
+            base = _Base(line, words[-7:])
             base.numbers = [
-                finite_number(word, self.path, index + 1, "a base position") for word in words[-7:]
+                finite_number(word, self.path, line, "a base position") for word in words[-7:]
             ]
             if max(map(abs, base.numbers)) > 1e12:
-                raise self.error("a base position that no body could have", index + 1)
+                raise self.error("a base position that no body could have", line)
             found[name] = base
         return found
 
@@ -190,18 +223,15 @@ class _Reader:
         """Each segment's parent ("" for none), a parent before its children."""
         given: dict[str, tuple[str, int]] = {}
         hierarchical = self.file_type(header) != "gtr"
-        for index in range(*self.sections.get("segmentnames&hierarchy", (0, 0))):
-            line = self.lines[index]
-            words = line.split("\t") if line.count("\t") == 1 else line.split()
-            if not line:
-                continue
+        for line, text in self.lines_of(self.sections.get("segmentnames&hierarchy")):
+            words = text.split("\t") if text.count("\t") == 1 else text.split()
             if len(words) not in ((2,) if hierarchical else (1, 2)):
-                raise self.error(f"a segment and its parent expected, got {line[:40]!r}", index + 1)
+                raise self.error(f"a segment and its parent expected, got {text[:40]!r}", line)
             name = words[0].strip()
             if name in given:
-                raise self.error(f"{name[:40]!r} for the second time", index + 1)
+                raise self.error(f"{name[:40]!r} for the second time", line)
             parent = words[1].strip() if len(words) == 2 and hierarchical else _GLOBAL
-            given[name] = ("" if parent.lower() == _GLOBAL else parent, index + 1)
+            given[name] = ("" if parent.lower() == _GLOBAL else parent, line)
         if not given and not hierarchical:
             named = [key for key in self.sections if key not in ("header", "baseposition")]
             given = dict.fromkeys(bases or named, ("", 1))
@@ -273,36 +303,50 @@ class _Reader:
     def motion(
         self, names: list[str], width: int, header: dict[str, tuple[str, str, int]]
     ) -> tuple[NDArray[np.float64], int]:
-        strange = self.sections.keys() - {*names, "header", "segmentnames&hierarchy"}
-        for name in strange - {"baseposition"}:
-            raise self.error(f"no segment is called {name[:40]!r}", self.sections[name][0])
-        tables: list[NDArray[np.float64]] = []
+        known = {*names, "header", "segmentnames&hierarchy", "baseposition"}
+        for name, own in self.sections.items():
+            if name not in known:
+                raise self.error(f"no segment is called {name[:40]!r}", own.line - 1)
         for name in names:
             if name not in self.sections:
-                last = len(self.lines)
+                last = 1 + self.text.count("\n")
                 raise self.error(f"{name[:40]!r} has no section: is the file whole?", last)
-            start, end = self.sections[name]
-            what = f"a frame of {name[:40]!r}"
-            table = number_table(self.lines[start:end], 1 + width, self.path, start + 1, what)
-            first = tables[0][:, 0] if tables else np.arange(len(table)) + table[:1, 0]
-            if not len(table) or not np.array_equal(table[:, 0], first):
-                raise self.error(
-                    f"the frames of {name[:40]!r} are not those of the first segment, one by one",
-                    start,
-                )
-            tables.append(table)
-        numbers = tables[0][:, 0]
+        numbers, values = np.empty(0), np.empty((0, 0))
+        for index, name in enumerate(names):
+            own = self.sections[name]
+            table = self.table(own, 1 + width)
+            if index == 0:
+                # No room for a table of more frames than the shortest section could hold.
+                shortest = min((self.sections[name] for name in names), key=_Section.__len__)
+                if 2 * len(table) * (1 + width) > len(shortest) + 1:
+                    self.table(shortest, 1 + width)  # which says better what is wrong with a line
+                    raise self.uneven(shortest)
+                numbers = np.arange(len(table)) + table[:1, 0]
+                values = np.empty((len(table), width * len(names)))
+            if not len(table) or not np.array_equal(table[:, 0], numbers):
+                raise self.uneven(own)
+            values[:, width * index : width * (index + 1)] = table[:, 1:]
         if not 0 <= numbers[0] <= 1e9 or numbers[0] != int(numbers[0]):
-            raise self.error("frames are counted from a whole number", self.sections[names[0]][0])
+            line = self.sections[names[0]].line - 1
+            raise self.error("frames are counted from a whole number", line)
         declared = whole_number(*self.value(header, "numframes", "0"), "NumFrames")
         if declared != len(numbers):
             self.warnings.append(f"NumFrames says {declared}, there are {len(numbers)}")
-        values = np.concatenate([table[:, 1:] for table in tables], axis=1)
-        gone = np.abs(values) > _LOST
+        gone = (values > _LOST) | (values < -_LOST)
         if gone.any():
             values[gone] = np.nan
             self.warnings.append(f"lost segments (9999999) in {int(gone.any(axis=1).sum())} frames")
         return values, int(numbers[0])
+
+    def table(self, own: _Section, width: int) -> NDArray[np.float64]:
+        rows = self.text[own.start : own.end].encode()
+        return number_block(rows, width, self.path, own.line, f"a frame of {own.name[:40]!r}")
+
+    def uneven(self, own: _Section) -> FormatError:
+        return self.error(
+            f"the frames of {own.name[:40]!r} are not those of the first segment, one by one",
+            own.line - 1,
+        )
 
     def joints(
         self,

@@ -32,11 +32,13 @@ _HUNDREDS = np.uint64(0x000F424000000064)
 _UNITS = np.uint64(0x0000271000000001)
 _ONES = np.uint64(0x0101010101010101)
 _TOPS = np.uint64(0x8080808080808080)
-_POINTS = _ONES * np.uint64(_POINT)
-_ONE, _SEVEN, _EIGHT, _TEN, _SIXTEEN, _THIRTY_TWO = map(np.uint64, (1, 7, 8, 10, 16, 32))
+_POINTS = _ONES * np.uint64(_POINT) ^ _ZEROS
+# Times 256 to the power of k, the highest three bits are 7 - k: the bytes behind byte k.
+_BEHIND = np.uint64(sum((7 - k) << (61 - 8 * k) for k in range(8)))
+_ONE, _SEVEN, _EIGHT, _TEN, _SIXTEEN = map(np.uint64, (1, 7, 8, 10, 16))
+_THIRTY_TWO, _SIXTY_ONE, _SIXTY_THREE = map(np.uint64, (32, 61, 63))
 # The last n characters of a word, for n of 0 to 8.
 _LAST = np.array([0, *(~((1 << (64 - 8 * n)) - 1) & (2**64 - 1) for n in range(1, 9))], np.uint64)
-_FILL = ~_LAST & _ZEROS
 _TENS = 10.0 ** np.arange(_WORD + 1)
 _EXACT = 2.0**53
 
@@ -108,11 +110,12 @@ class Spelled:
 
 
 def blocks(data: bytes, start: int = 0) -> Iterator[bytes]:
-    """Cuts bytes behind line ends into pieces of about `BLOCK`."""
+    """Cuts bytes behind line ends into pieces of about `BLOCK`, smaller ones of a small file."""
+    size = min(BLOCK, max(len(data) // 16, 1 << 14))
     while start < len(data):
         end = len(data)
-        if end - start > BLOCK:
-            newline = data.find(b"\n", start + BLOCK)
+        if end - start > size:
+            newline = data.find(b"\n", start + size)
             end = newline + 1 if newline >= 0 else end
         yield data[start:end]
         start = end
@@ -142,8 +145,11 @@ def parsed(
     negative = words.data[starts] == _MINUS
     lengths = ends - starts - negative
     short = lengths <= _WORD
-    if 2 * np.count_nonzero(short) > len(starts):
-        values, done = _short(words.data, ends, np.where(short, lengths, 0))
+    brief = np.count_nonzero(short)
+    if 2 * brief > len(starts):
+        if brief < len(starts):
+            lengths *= short
+        values, done = _short(words.data, ends, lengths)
         left = np.flatnonzero(~done)
     else:
         values, left = np.empty(len(starts)), np.arange(len(starts))
@@ -151,7 +157,8 @@ def parsed(
         first = starts[left] + negative[left]
         values[left], done = _long(words.data, first, ends[left])
         left = left[~done]
-    np.negative(values, out=values, where=negative)
+    # The sign is the highest bit, of a zero too.
+    values.view(np.uint64)[...] ^= negative.astype(np.uint64) << _SIXTY_THREE
     if not len(left):
         return values, None
     values[left], bad = _one_by_one(words.data.tobytes(), starts[left], ends[left])
@@ -162,22 +169,30 @@ def _short(
     data: NDArray[np.uint8], ends: NDArray[np.intp], lengths: NDArray[np.intp]
 ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     """Numbers of at most eight characters with a point, and where they are such numbers."""
-    word = _words_at(data)[ends - _WORD]
-    word &= _LAST[lengths]
-    word |= _FILL[lengths]
+    word = _last_characters(data, ends, lengths)
     # The lowest bit that is set stands in the first byte that is a point.
     found = word ^ _POINTS
-    found = (found - _ONES) & ~found & _TOPS
-    found &= ~found + _ONE
-    before = (found >> _SEVEN) - _ONE
-    after = word & ~((found << _ONE) - _ONE)
-    digits = ((word & before) << _EIGHT) | after | np.uint64(0x30)
-    whole, good = _integers(digits)
-    # A power of two as a float is its exponent: how many bits, hence bytes, are before the point.
-    bits = (found.astype(np.float64).view(np.int64) >> 52) - 1023
-    part = (_WORD * _WORD - 1 - bits) >> 3
-    good &= (found != 0) & (lengths > 1)
-    return whole / _TENS[part * good], good
+    below = found - _ONES
+    np.invert(found, out=found)
+    found &= below
+    found &= _TOPS
+    np.negative(found, out=below)
+    found &= below
+    after = found << _ONE
+    after -= _ONE
+    np.invert(after, out=after)
+    after &= word
+    found >>= _SEVEN
+    word &= found - _ONE
+    word <<= _EIGHT
+    word |= after
+    whole, good = _integers(word)
+    good &= found != 0
+    good &= lengths > 1
+    found *= _BEHIND
+    found >>= _SIXTY_ONE
+    whole /= _TENS[found.view(np.int64)]
+    return whole, good
 
 
 def _long(
@@ -214,7 +229,8 @@ def _one_by_one(
                 values[index] = float(word)
             except ValueError:
                 break
-    values[[b"_" in word for word in words]] = np.nan
+    if b"_" in data:
+        values[[b"_" in word for word in words]] = np.nan
     bad = np.flatnonzero(~np.isfinite(values))
     return values, int(bad[0]) if len(bad) else None
 
@@ -243,17 +259,33 @@ def _digits(
     data: NDArray[np.uint8], ends: NDArray[np.intp], count: NDArray[np.intp]
 ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     """The integers that the `count` characters before `ends` are, and where they are digits."""
-    word = _words_at(data)[ends - _WORD]
+    return _integers(_last_characters(data, ends, count))
+
+
+def _last_characters(
+    data: NDArray[np.uint8], ends: NDArray[np.intp], count: NDArray[np.intp]
+) -> NDArray[np.uint64]:
+    """The `count` characters before `ends` less the digit 0, behind zeros."""
+    word: NDArray[np.uint64] = _words_at(data)[ends - _WORD]
+    word ^= _ZEROS
     word &= _LAST[count]
-    word |= _FILL[count]
-    return _integers(word)
+    return word
 
 
 def _integers(word: NDArray[np.uint64]) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-    """What eight digits are, and where all of them are digits."""
-    word = word ^ _ZEROS
-    good = ((word + _SIXES) | word) & _HIGH == 0
-    word = word * _TEN + (word >> _EIGHT)
-    high = (word & _PAIRS) * _HUNDREDS
-    low = ((word >> _SIXTEEN) & _PAIRS) * _UNITS
-    return ((high + low) >> _THIRTY_TWO).astype(np.float64), good
+    """What eight digits are, and where all of them are digits; each is less the digit 0."""
+    high = word + _SIXES
+    high |= word
+    high &= _HIGH
+    good = high == 0
+    np.right_shift(word, _EIGHT, out=high)
+    pairs = word * _TEN
+    pairs += high
+    np.bitwise_and(pairs, _PAIRS, out=high)
+    high *= _HUNDREDS
+    pairs >>= _SIXTEEN
+    pairs &= _PAIRS
+    pairs *= _UNITS
+    pairs += high
+    pairs >>= _THIRTY_TWO
+    return pairs.view(np.int64).astype(np.float64), good

@@ -28,7 +28,8 @@ from .making import marker_motion
 from .mutants import binary_mutant, text_mutant
 
 OURS = ("C3D", "TRC", "CSM", "AOA", "BRD", "CSV", "CSV of joints", "BAP")
-FORMATS = {each.name: each for each in formats() if each.name in OURS}
+ALL = {each.name: each for each in formats()}
+FORMATS = {name: ALL[name] for name in OURS}
 REAL = {
     "TRC": ("trc/T.trc", "trc/Gait.trc", "trc_opensim/exampleFormat.trc"),
     "CSM": ("csm/ThomasFechten.csm",),
@@ -100,13 +101,15 @@ def test_noise_is_read_or_refused(
     taken_or_refused(FORMATS[name], tmp_path_factory.getbasetemp() / "noise", noise)
 
 
-@pytest.mark.parametrize("name", FORMATS)
+@pytest.mark.parametrize("name", ALL)
 def test_no_such_file_and_empty_files(tmp_path: Path, name: str) -> None:
+    """Nothing, a byte order mark alone, and blanks that only Unicode or Latin-1 has."""
     with pytest.raises(FormatError):
-        FORMATS[name].read(tmp_path / "nowhere")
+        ALL[name].read(tmp_path / "nowhere")
     with pytest.raises(FormatError):
-        FORMATS[name].read(tmp_path)
-    taken_or_refused(FORMATS[name], tmp_path / "empty", b"")
+        ALL[name].read(tmp_path)
+    for raw in (b"", b"\xef\xbb\xbf\n", b"\xa0", "\u2003\n\x85\n".encode(), b"\x1c\x1d"):
+        taken_or_refused(ALL[name], tmp_path / "empty", raw)
 
 
 @pytest.mark.soak
