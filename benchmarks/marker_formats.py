@@ -68,9 +68,9 @@ def moved(
     motion = MarkerMotion(names, 120.0, positions, Space(0.001, "z"), analog=analog)
     if not measured:
         return motion
-    steps = rng.integers(1, 127, (2, frames, markers))
-    residuals = np.where(motion.seen, steps[0] * 0.125, np.nan).astype(np.float32)
-    return replace(motion, residuals=residuals, cameras=(steps[1] * motion.seen).astype(np.uint8))
+    units = rng.integers(1, 127, (2, frames, markers))
+    residuals = np.where(motion.seen, units[0] * 0.125, np.nan).astype(np.float32)
+    return replace(motion, residuals=residuals, cameras=(units[1] * motion.seen).astype(np.uint8))
 
 
 def made(folder: Path) -> list[Path]:
