@@ -92,7 +92,10 @@ def _carry(bears: Mask, points: Array, period: float) -> None:
 def _flatten(
     model: mujoco.MjModel, soles: NDArray[np.int64], side: str, bears: Mask, points: Array
 ) -> None:
-    """Stand a foot flat, in place, where only its heel bears beside a time when it is flat."""
+    """Lay a foot flat where only its heel bears beside a time when it is flat.
+
+    It lies where its heel is: one that strikes early glides on to where it will stand.
+    """
     bodies = model.geom_bodyid[soles]
     heel = np.flatnonzero(bodies == model.body(f"{side}_foot").id)
     toes = np.flatnonzero(bodies == model.body(f"{side}_toe").id)
@@ -105,7 +108,10 @@ def _flatten(
         if len(stood):
             alone = rows[on_heel[rows] & ~on_toes[rows]]
             nearest = stood[np.abs(alone[:, None] - stood).argmin(axis=1)]
-            points[np.ix_(alone, foot)] = points[np.ix_(nearest, foot)]
+            gone = points[np.ix_(alone, heel)] - points[np.ix_(nearest, heel)]
+            gone[:, :, 2] = 0.0
+            lain = points[np.ix_(nearest, foot)] + gone.mean(axis=1, keepdims=True)
+            points[np.ix_(alone, foot)] = lain
             bears[np.ix_(alone, foot)] = True
 
 
