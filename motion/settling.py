@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 from scipy.ndimage import find_objects, label
 
 from enpointe.models.anatomy import SIDES
-from enpointe.motion.contact_schedule import ContactSchedule, without_chatter
+from enpointe.motion.contact_schedule import ON_FLOOR, ContactSchedule, without_chatter
+from enpointe.motion.foot_turns import held_headings, turned_about
 
 __all__ = ["SHORTEST_FLIGHT", "led", "stances"]
 
@@ -42,10 +43,12 @@ def stances(model: mujoco.MjModel, contacts: ContactSchedule) -> ContactSchedule
     """
     contacts, period = _bridged(contacts), _period(contacts)
     bears, points = contacts.bears.copy(), contacts.points.copy()
+    _lay_down(model, contacts.soles, bears, points)
     feet = [_soles_of(model, contacts.soles, side) for side in SIDES]
     astray = []
     for side, foot in zip(SIDES, feet, strict=True):
         _flatten(model, contacts.soles, side, bears, points)
+        _hold_heading(foot, bears, points, period)
         astray.append(_plant(foot, bears, points, period))
     for foot, away, other in zip(feet, astray, reversed(astray), strict=True):
         bears[np.ix_((away > MOST_SLIDE) & (away > other), foot)] = False
@@ -115,9 +118,33 @@ def _flatten(
             bears[np.ix_(alone, foot)] = True
 
 
+def _lay_down(model: mujoco.MjModel, soles: NDArray[np.int64], bears: Mask, points: Array) -> None:
+    """Let what lies on the floor beside what bears, of the same foot, bear as well."""
+    for side in SIDES:
+        foot = _soles_of(model, soles, side)
+        beside = bears[:, foot].any(axis=1, keepdims=True)
+        bears[:, foot] |= beside & (points[:, foot, 2] < ON_FLOOR)
+
+
 def _soles_of(model: mujoco.MjModel, soles: NDArray[np.int64], side: str) -> NDArray[np.int64]:
     parts = [model.body(f"{side}_{part}").id for part in ("foot", "toe")]
     return np.flatnonzero(np.isin(model.geom_bodyid[soles], parts))
+
+
+def _hold_heading(foot: NDArray[np.int64], bears: Mask, points: Array, period: float) -> None:
+    """Turn a foot in its stances no more than it must, each sample about what bears."""
+    bearing = bears[:, foot]
+    if not bearing.any():
+        return
+    weights = bearing / np.maximum(bearing.sum(axis=1, keepdims=True), 1)
+    centre = np.einsum("tn,tnk->tk", weights, points[:, foot, :2])
+    # Of a flat foot the longest axis of its soles, and of any foot that all of them lie on.
+    first, last = foot[: len(foot) // 3], foot[len(foot) // 3 :]
+    ahead = points[:, last, :2].mean(axis=1) - points[:, first, :2].mean(axis=1)
+    heading = np.unwrap(np.arctan2(ahead[:, 1], ahead[:, 0]))
+    stands = bearing.any(axis=1)
+    angle = np.where(stands, held_headings(heading, stands, 1.0 / period) - heading, 0.0)
+    points[:, foot] = turned_about(points[:, foot], centre, angle)
 
 
 def _plant(foot: NDArray[np.int64], bears: Mask, points: Array, period: float) -> Mask:

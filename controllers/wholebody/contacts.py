@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from enpointe.controllers.wholebody.reference import Reference
 from enpointe.controllers.wholebody.rows import repeated
+from enpointe.motion.contact_schedule import ContactSchedule
 
-__all__ = ["ContactSchedule", "Uptake"]
+__all__ = ["PlannedSoles", "Uptake"]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -26,19 +27,24 @@ PLANTED_SPEED = 0.1
 """A sole that the reference moves faster than this, m/s, slides or swings and bears nothing."""
 
 
-class ContactSchedule:
-    """The soles that the reference puts on the floor, still, at each of its samples.
+class PlannedSoles:
+    """The soles that are meant to bear at each sample of a reference.
 
     Args:
         reference: What is to be danced.
+        contacts: Which soles it was planned to stand on; without, those that it puts on the floor,
+            still.
 
     Attributes:
         planned: (T, S).
     """
 
-    def __init__(self, reference: Reference) -> None:
-        level = np.linalg.norm(np.asarray(reference.point_velocity)[:, :, :2], axis=2)
-        self.planned = (reference.clearance < PLANNED_DOWN) & (level < PLANTED_SPEED)
+    def __init__(self, reference: Reference, contacts: ContactSchedule | None = None) -> None:
+        if contacts is None:
+            level = np.linalg.norm(np.asarray(reference.point_velocity)[:, :, :2], axis=2)
+            self.planned = (reference.clearance < PLANNED_DOWN) & (level < PLANTED_SPEED)
+        else:
+            self.planned = np.array([contacts.at(t) for t in reference.time.tolist()])
         self._times = reference.time.tolist()
 
     def at(self, t: float) -> NDArray[np.bool_]:

@@ -21,7 +21,7 @@ from enpointe.controllers.wholebody.constraints import (
     TorqueLimits,
     joint_torques,
 )
-from enpointe.controllers.wholebody.contacts import ContactSchedule, Uptake
+from enpointe.controllers.wholebody.contacts import PlannedSoles, Uptake
 from enpointe.controllers.wholebody.instant import Instant, Observer
 from enpointe.controllers.wholebody.problem import WholeBodyProblem
 from enpointe.controllers.wholebody.reference import Reference
@@ -38,6 +38,7 @@ from enpointe.controllers.wholebody.tasks import (
     Task,
 )
 from enpointe.motion import Motion
+from enpointe.motion.contact_schedule import ContactSchedule
 
 __all__ = ["DEFAULT_TASKS", "WholeBody", "Workload"]
 
@@ -90,6 +91,8 @@ class WholeBody:
 
     Args:
         motion: What to dance.
+        contacts: Which soles it was planned to stand on, of the same model; read from the motion if
+            None.
         model: The controller's own picture of the body; the motion's model if None.
         tasks: What is wished for.
         constraints: What must hold; root, friction, torques and joint ranges if None.
@@ -106,6 +109,7 @@ class WholeBody:
         self,
         motion: Motion,
         *,
+        contacts: ContactSchedule | None = None,
         model: mujoco.MjModel | None = None,
         tasks: Sequence[Task] = DEFAULT_TASKS,
         constraints: Sequence[Constraint] | None = None,
@@ -130,7 +134,7 @@ class WholeBody:
             )
         )
         self._reference = Reference(motion, self._observer)
-        self._schedule = ContactSchedule(self._reference)
+        self._schedule = PlannedSoles(self._reference, contacts)
         self._place = StandingPlace()
         self._uptake = Uptake(len(self._observer.soles))
         self._period = period
