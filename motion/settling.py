@@ -21,6 +21,8 @@ something else stands."""
 MOST_SLIDE = 0.03
 """m: a standing foot that slides no farther is taken to stand still; one that is farther from where
 it rests is on its way."""
+_MOST_GLIDE = 0.1
+"""m: the same of a foot that bears alone. It can't be on its way."""
 _RESTING, _RESTS = 0.1, 0.08
 """m/s and s: slower than the first for as long as the second, a foot rests."""
 
@@ -45,11 +47,13 @@ def stances(model: mujoco.MjModel, contacts: ContactSchedule) -> ContactSchedule
     bears, points = contacts.bears.copy(), contacts.points.copy()
     _lay_down(model, contacts.soles, bears, points)
     feet = [_soles_of(model, contacts.soles, side) for side in SIDES]
-    astray = []
-    for side, foot in zip(SIDES, feet, strict=True):
+    for side in SIDES:
         _flatten(model, contacts.soles, side, bears, points)
-        _hold_heading(foot, bears, points, period)
-        astray.append(_plant(foot, bears, points, period))
+        _hold_heading(*_parts_of(model, contacts.soles, side), bears, points, period)
+    astray = [
+        _plant(foot, bears, points, period, ~bears[:, other].any(axis=1))
+        for foot, other in zip(feet, reversed(feet), strict=True)
+    ]
     for foot, away, other in zip(feet, astray, reversed(astray), strict=True):
         bears[np.ix_((away > MOST_SLIDE) & (away > other), foot)] = False
     return _bridged(ContactSchedule(contacts.time, contacts.soles, points, bears))
@@ -97,11 +101,10 @@ def _flatten(
 ) -> None:
     """Lay a foot flat where only its heel bears beside a time when it is flat.
 
-    It lies where its heel is: one that strikes early glides on to where it will stand.
+    It lies in place, or, farther away, where its heel is: one that strikes early glides on to where
+    it will stand.
     """
-    bodies = model.geom_bodyid[soles]
-    heel = np.flatnonzero(bodies == model.body(f"{side}_foot").id)
-    toes = np.flatnonzero(bodies == model.body(f"{side}_toe").id)
+    heel, toes = _parts_of(model, soles, side)
     foot = _soles_of(model, soles, side)
     on_heel, on_toes = (np.asarray(bears[:, part].any(axis=1)) for part in (heel, toes))
     flat = np.asarray(bears[:, foot].all(axis=1))
@@ -112,42 +115,48 @@ def _flatten(
             alone = rows[on_heel[rows] & ~on_toes[rows]]
             nearest = stood[np.abs(alone[:, None] - stood).argmin(axis=1)]
             gone = points[np.ix_(alone, heel)] - points[np.ix_(nearest, heel)]
-            gone[:, :, 2] = 0.0
-            lain = points[np.ix_(nearest, foot)] + gone.mean(axis=1, keepdims=True)
-            points[np.ix_(alone, foot)] = lain
+            gone = gone.mean(axis=1, keepdims=True) * [1.0, 1.0, 0.0]
+            gone[np.linalg.norm(gone, axis=2) < MOST_SLIDE] = 0.0
+            points[np.ix_(alone, foot)] = points[np.ix_(nearest, foot)] + gone
             bears[np.ix_(alone, foot)] = True
 
 
 def _lay_down(model: mujoco.MjModel, soles: NDArray[np.int64], bears: Mask, points: Array) -> None:
-    """Let what lies on the floor beside what bears, of the same foot, bear as well."""
+    """Let a heel that lies on the floor bear beside toes that do."""
     for side in SIDES:
-        foot = _soles_of(model, soles, side)
-        beside = bears[:, foot].any(axis=1, keepdims=True)
-        bears[:, foot] |= beside & (points[:, foot, 2] < ON_FLOOR)
+        heel, toes = _parts_of(model, soles, side)
+        beside = bears[:, toes].any(axis=1, keepdims=True)
+        bears[:, heel] |= beside & (points[:, heel, 2] < ON_FLOOR)
+
+
+def _parts_of(
+    model: mujoco.MjModel, soles: NDArray[np.int64], side: str
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Rows of a foot's heel, and of its toes."""
+    bodies = model.geom_bodyid[soles]
+    heel, toes = (bodies == model.body(f"{side}_{part}").id for part in ("foot", "toe"))
+    return np.flatnonzero(heel), np.flatnonzero(toes)
 
 
 def _soles_of(model: mujoco.MjModel, soles: NDArray[np.int64], side: str) -> NDArray[np.int64]:
-    parts = [model.body(f"{side}_{part}").id for part in ("foot", "toe")]
-    return np.flatnonzero(np.isin(model.geom_bodyid[soles], parts))
+    return np.union1d(*_parts_of(model, soles, side))
 
 
-def _hold_heading(foot: NDArray[np.int64], bears: Mask, points: Array, period: float) -> None:
-    """Turn a foot in its stances no more than it must, each sample about what bears."""
-    bearing = bears[:, foot]
-    if not bearing.any():
-        return
-    weights = bearing / np.maximum(bearing.sum(axis=1, keepdims=True), 1)
-    centre = np.einsum("tn,tnk->tk", weights, points[:, foot, :2])
-    # Of a flat foot the longest axis of its soles, and of any foot that all of them lie on.
-    first, last = foot[: len(foot) // 3], foot[len(foot) // 3 :]
-    ahead = points[:, last, :2].mean(axis=1) - points[:, first, :2].mean(axis=1)
+def _hold_heading(
+    heel: NDArray[np.int64], toes: NDArray[np.int64], bears: Mask, points: Array, period: float
+) -> None:
+    """Turn a foot in its stances no more than it must, about the middle of what bears."""
+    foot = np.union1d(heel, toes)
+    stands = bears[:, foot].any(axis=1)
+    ahead = points[:, toes, :2].mean(axis=1) - points[:, heel, :2].mean(axis=1)
     heading = np.unwrap(np.arctan2(ahead[:, 1], ahead[:, 0]))
-    stands = bearing.any(axis=1)
     angle = np.where(stands, held_headings(heading, stands, 1.0 / period) - heading, 0.0)
+    share = bears[:, foot] / np.maximum(bears[:, foot].sum(axis=1, keepdims=True), 1)
+    centre = (share[:, :, None] * points[:, foot, :2]).sum(axis=1)
     points[:, foot] = turned_about(points[:, foot], centre, angle)
 
 
-def _plant(foot: NDArray[np.int64], bears: Mask, points: Array, period: float) -> Mask:
+def _plant(foot: NDArray[np.int64], bears: Mask, points: Array, period: float, alone: Mask) -> Mask:
     """Keep a foot where it rests for as long as it stands; it may turn there.
 
     Its place is the mean of the soles that bear; where others take over, it has not moved.
@@ -161,14 +170,18 @@ def _plant(foot: NDArray[np.int64], bears: Mask, points: Array, period: float) -
         both = (bearing[1:] & bearing[:-1])[:, :, None]
         steps = np.sum(np.diff(placed, axis=0) * both, axis=1) / np.maximum(both.sum(axis=1), 1)
         way = np.vstack([np.zeros(2), np.cumsum(steps, axis=0)])
-        back = _home(way, period) - way
+        back = _home(way, period, alone[stance]) - way
         points[stance, foot, :2] += back[:, None]
         astray[stance] = np.linalg.norm(back, axis=1)
     return astray
 
 
-def _home(way: Array, period: float) -> Array:
-    """(K, 2), where a foot that goes along a way (K, 2) rests, or comes to rest, or did."""
+def _home(way: Array, period: float, alone: Mask) -> Array:
+    """(K, 2), where a foot that goes along a way (K, 2) rests, or comes to rest, or did.
+
+    A foot that bears alone all the way from one rest to the next, and that not far, has not moved:
+    what is seen is the body's drift, or a glide that no weight can make.
+    """
     speed = np.linalg.norm(np.diff(way, axis=0, prepend=way[:1]), axis=1) / period
     rests = [
         run
@@ -179,7 +192,9 @@ def _home(way: Array, period: float) -> Array:
     ends = [rests[0].stop]
     for run in rests[1:]:
         here = np.median(way[run], axis=0)
-        if np.linalg.norm(here - np.median(places[-1], axis=0)) < MOST_SLIDE:
+        carries = alone[ends[-1] - 1 : run.start + 1].all()
+        most = _MOST_GLIDE if carries else MOST_SLIDE
+        if np.linalg.norm(here - np.median(places[-1], axis=0)) < most:
             places[-1] = np.vstack([places[-1], way[run]])
             ends[-1] = run.stop
         else:
