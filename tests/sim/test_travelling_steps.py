@@ -14,6 +14,7 @@ from enpointe.models.anatomy import SIDES
 from enpointe.motion import Motion
 from enpointe.motion.contact_schedule import ContactSchedule, contact_schedule
 from enpointe.motion.danceable import Danceable, make_danceable
+from enpointe.motion.foot_turns import turned_about
 from enpointe.motion.settling import led, stances
 from enpointe.sim.body import SimulatedBody
 from enpointe.sim.measures import measure
@@ -26,9 +27,9 @@ LANDS = {"left": (1.5, 2.4), "right": (1.95,)}
 """s; the foot leaves .35 s before."""
 
 
-def walk(strikes_early: float) -> tuple[Motion, ContactSchedule]:
-    """Three steps as they are captured: the body goes ahead, and a heel that is yet on its way is
-    seen on the floor some time before it rests.
+def walk(strikes_early: float, turns: float) -> tuple[Motion, ContactSchedule]:
+    """Three steps as they are captured: a heel that is yet on its way is seen on the floor some
+    time before it rests, and a foot turns while it carries.
     """
     time = np.arange(round(4.4 * RATE) + 1) / RATE
     standing = np.array(MODEL.key("standing").qpos)
@@ -50,18 +51,24 @@ def walk(strikes_early: float) -> tuple[Motion, ContactSchedule]:
             swings = (time > lands - 0.35) & (time < lands)
             bears[np.ix_(swings, foot)] = False
             bears[np.ix_(swings & (time >= lands - strikes_early), heel)] = True
+            other = ~foot
+            share = np.clip((time - lands + 0.35) / 0.35, 0.0, 1.0)
+            centre = points[:, other, :2].mean(axis=1)
+            points[:, other] = turned_about(points[:, other], centre, turns * share)
     return Motion.from_qpos(MODEL, time, qpos), ContactSchedule(time, found.soles, points, bears)
 
 
-def danceable(strikes_early: float) -> Danceable:
-    motion, seen = walk(strikes_early)
+def danceable(strikes_early: float, turns: float) -> Danceable:
+    motion, seen = walk(strikes_early, turns)
     return make_danceable(motion, contacts=led(stances(MODEL, seen)))
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("strikes_early", [0.0, 0.12])
-def test_a_walk_is_danced_though_heels_are_seen_to_strike_early(strikes_early: float) -> None:
-    made = danceable(strikes_early)
+@pytest.mark.parametrize(("strikes_early", "turns"), [(0.0, 0.0), (0.12, 0.4)])
+def test_a_walk_is_danced_though_heels_strike_early_and_feet_turn(
+    strikes_early: float, turns: float
+) -> None:
+    made = danceable(strikes_early, turns)
     driver = WholeBody(made.motion, contacts=made.contacts)
     recording = perform(made.motion, driver, SimulatedBody.at_start_of(made.motion))
     measures = measure(recording)
