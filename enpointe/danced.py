@@ -59,12 +59,14 @@ def run_physics(
     """
     from enpointe.controllers import PD, FeedForward, WholeBody
     from enpointe.controllers import perform as run
+    from enpointe.controllers.wholebody import DEFAULT_TASKS, STEPPING_TASKS
     from enpointe.sim.body import SimulatedBody
     from enpointe.sim.measures import measure
 
     planned = FeedForward.along(motion, contacts)
+    tasks = DEFAULT_TASKS if contacts is None else STEPPING_TASKS
     driver = (
-        WholeBody(motion, contacts=contacts)
+        WholeBody(motion, contacts=contacts, tasks=tasks)
         if controller == "wholebody"
         else PD(motion, feedforward=planned)
     )

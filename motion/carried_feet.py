@@ -26,7 +26,7 @@ def carried(points: Array, planned: Array, bears: Mask) -> Array:
         planned: Where the soles are to stand, (T, N, 3), m.
         bears: (T, N).
     """
-    stands = bears.any(axis=1)
+    stands = np.asarray(bears.any(axis=1))
     if not stands.any():
         return points
     weights = bears / np.maximum(bears.sum(axis=1, keepdims=True), 1)

@@ -51,7 +51,7 @@ def stances(model: mujoco.MjModel, contacts: ContactSchedule) -> ContactSchedule
         _flatten(model, contacts.soles, side, bears, points)
         _hold_heading(*_parts_of(model, contacts.soles, side), bears, points, period)
     astray = [
-        _plant(foot, bears, points, period, ~bears[:, other].any(axis=1))
+        _plant(foot, bears, points, period, np.asarray(~bears[:, other].any(axis=1)))
         for foot, other in zip(feet, reversed(feet), strict=True)
     ]
     for foot, away, other in zip(feet, astray, reversed(astray), strict=True):
@@ -147,7 +147,7 @@ def _hold_heading(
 ) -> None:
     """Turn a foot in its stances no more than it must, about the middle of what bears."""
     foot = np.union1d(heel, toes)
-    stands = bears[:, foot].any(axis=1)
+    stands = np.asarray(bears[:, foot].any(axis=1))
     ahead = points[:, toes, :2].mean(axis=1) - points[:, heel, :2].mean(axis=1)
     heading = np.unwrap(np.arctan2(ahead[:, 1], ahead[:, 0]))
     angle = np.where(stands, held_headings(heading, stands, 1.0 / period) - heading, 0.0)

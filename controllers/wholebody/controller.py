@@ -40,7 +40,7 @@ from enpointe.controllers.wholebody.tasks import (
 from enpointe.motion import Motion
 from enpointe.motion.contact_schedule import ContactSchedule
 
-__all__ = ["DEFAULT_TASKS", "WholeBody", "Workload"]
+__all__ = ["DEFAULT_TASKS", "STEPPING_TASKS", "WholeBody", "Workload"]
 
 Array = NDArray[np.float64]
 PERIOD = 0.002
@@ -57,6 +57,17 @@ DEFAULT_TASKS: tuple[Task, ...] = (
     Posture(),
     SwingFoot(),
 )
+STEPPING_TASKS: tuple[Task, ...] = (
+    CentreOfMass(),
+    AngularMomentum(weight=1.0),
+    Contact(pivots=True),
+    Landing(),
+    Orientation(),
+    Posture(),
+    SwingFoot(),
+)
+"""For steps that follow one another: what trunk and arms take up of the weight's error in one they
+can't give back before the next, so that they take up less; and feet that turn as they carry."""
 TONE_FREQUENCY = 2 * np.pi * 1.0
 """rad/s. Joints are held softly to what the programme integrates to, a third of the frequency that
 plain PD is given, so that a body without torque control can be driven as well."""

@@ -9,6 +9,7 @@ import pytest
 
 import enpointe
 from enpointe.controllers import WholeBody, perform
+from enpointe.controllers.wholebody import STEPPING_TASKS
 from enpointe.models import dancer_model
 from enpointe.models.anatomy import SIDES
 from enpointe.motion import Motion
@@ -69,7 +70,7 @@ def test_a_walk_is_danced_though_heels_strike_early_and_feet_turn(
     strikes_early: float, turns: float
 ) -> None:
     made = danceable(strikes_early, turns)
-    driver = WholeBody(made.motion, contacts=made.contacts)
+    driver = WholeBody(made.motion, contacts=made.contacts, tasks=STEPPING_TASKS)
     recording = perform(made.motion, driver, SimulatedBody.at_start_of(made.motion))
     measures = measure(recording)
     assert measures.fell_at is None
