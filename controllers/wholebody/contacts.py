@@ -15,6 +15,7 @@ __all__ = ["PlannedSoles", "Uptake"]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
+_NONE: Indices = np.empty(0, dtype=np.int64)
 PLANNED_DOWN = 0.001
 """A sole that the reference has lower than this, m, is on the floor: weight that is counted on
 while a heel is still coming down is missing under the ball, and lets the body drop onto it."""
@@ -51,10 +52,27 @@ class PlannedSoles:
         """Soles planned to bear at `t` seconds, (S,)."""
         return np.asarray(self.planned[max(bisect_right(self._times, t) - 1, 0)])
 
-    def split(self, t: float, clearance: Array) -> tuple[Indices, Indices]:
-        """Rows of the soles that are planned to bear at `t`: those on the floor, and those not."""
+    def split(
+        self, t: float, clearance: Array, standing: Indices = _NONE
+    ) -> tuple[Indices, Indices]:
+        """Rows of the soles that bear at `t`: those that are meant to and are on the floor.
+
+        Where none of them is there yet, what stood until now and is still on the floor stands on:
+        a foot that lands late is waited for.
+
+        Args:
+            t: s.
+            clearance: Of each sole, (S,), m.
+            standing: Rows that bore until now.
+
+        Returns:
+            They, and those that are meant to bear and are off the floor.
+        """
         planned, near = self.at(t), clearance < NEAR
-        return (planned & near).nonzero()[0], (planned > near).nonzero()[0]
+        active = (planned & near).nonzero()[0]
+        if len(active) == 0 and planned.any():
+            active = standing[near[standing]]
+        return active, (planned > near).nonzero()[0]
 
 
 class Uptake:

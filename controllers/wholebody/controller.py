@@ -148,6 +148,7 @@ class WholeBody:
         self._schedule = PlannedSoles(self._reference, contacts)
         self._place = StandingPlace()
         self._uptake = Uptake(len(self._observer.soles))
+        self._active = np.empty(0, dtype=np.int64)
         self._period = period
         self._fallback = Gains.suggested(motion.model, motion.qpos[0])
         plant.place(motion.qpos[0])
@@ -164,9 +165,9 @@ class WholeBody:
         self.workload = Workload()
         self.problem = self.unknowns = None
         self._observer.place(state.qpos, state.qvel)
-        active, _ = self._schedule.split(0.0, self._observer.clearance())
-        self._place.reset(self._observer.points(), self._reference.points[0], active)
-        self._uptake.reset(active)
+        self._active, _ = self._schedule.split(0.0, self._observer.clearance())
+        self._place.reset(self._observer.points(), self._reference.points[0], self._active)
+        self._uptake.reset(self._active)
         self._torque[:] = 0.0
         self._position[:] = state.qpos[self._angles]
         self._velocity[:] = state.qvel[self._dofs]
@@ -190,7 +191,8 @@ class WholeBody:
     def build(self, t: float, state: State) -> WholeBodyProblem:
         """The programme at `t` seconds in `state`, not yet solved."""
         self._observer.place(state.qpos, state.qvel)
-        active, due = self._schedule.split(t, self._observer.clearance())
+        active, due = self._schedule.split(t, self._observer.clearance(), self._active)
+        self._active = active
         capacity = self._uptake.follow(active, self._period)
         instant = self._observer.instant(active, capacity, due)
         goal = self._reference.at(t)
