@@ -27,6 +27,7 @@ from enpointe.controllers.wholebody.problem import WholeBodyProblem
 from enpointe.controllers.wholebody.reference import Reference
 from enpointe.controllers.wholebody.rows import places
 from enpointe.controllers.wholebody.standing_place import StandingPlace
+from enpointe.controllers.wholebody.step_adjustment import StepAdjustment
 from enpointe.controllers.wholebody.tasks import (
     AngularMomentum,
     CentreOfMass,
@@ -58,16 +59,17 @@ DEFAULT_TASKS: tuple[Task, ...] = (
     SwingFoot(),
 )
 STEPPING_TASKS: tuple[Task, ...] = (
-    CentreOfMass(),
+    CentreOfMass(weight=1000.0),
     AngularMomentum(weight=1.0),
     Contact(pivots=True),
     Landing(),
     Orientation(),
     Posture(),
-    SwingFoot(),
+    SwingFoot(weight=100.0),
 )
-"""For steps that follow one another: what trunk and arms take up of the weight's error in one they
-can't give back before the next, so that they take up less; and feet that turn as they carry."""
+"""For steps that follow one another: what trunk, arms and a leg in the air take up of the weight's
+error in one they can't give back before the next, so that they take up less; and feet that carry
+may turn."""
 TONE_FREQUENCY = 2 * np.pi * 1.0
 """rad/s. Joints are held softly to what the programme integrates to, a third of the frequency that
 plain PD is given, so that a body without torque control can be driven as well."""
@@ -147,6 +149,11 @@ class WholeBody:
         self._reference = Reference(motion, self._observer)
         self._schedule = PlannedSoles(self._reference, contacts)
         self._place = StandingPlace()
+        self._steps = (
+            None
+            if contacts is None
+            else StepAdjustment(self._schedule, self._reference.time, self._observer.feet)
+        )
         self._uptake = Uptake(len(self._observer.soles))
         self._active = np.empty(0, dtype=np.int64)
         self._period = period
@@ -168,6 +175,8 @@ class WholeBody:
         self._active, _ = self._schedule.split(0.0, self._observer.clearance())
         self._place.reset(self._observer.points(), self._reference.points[0], self._active)
         self._uptake.reset(self._active)
+        if self._steps is not None:
+            self._steps.reset()
         self._torque[:] = 0.0
         self._position[:] = state.qpos[self._angles]
         self._velocity[:] = state.qvel[self._dofs]
@@ -197,7 +206,10 @@ class WholeBody:
         instant = self._observer.instant(active, capacity, due)
         goal = self._reference.at(t)
         place = self._place.follow(instant.points, goal.points, active, self._period)
-        return WholeBodyProblem.build(instant, goal.placed(place), self.tasks, self.constraints)
+        goal = goal.placed(place)
+        if self._steps is not None:
+            goal = self._steps.follow(t, instant, goal, self._period)
+        return WholeBodyProblem.build(instant, goal, self.tasks, self.constraints)
 
     def _obey(self, instant: Instant, unknowns: Array) -> Command:
         dt, keep = self._period, math.exp(-self._period / TONE_MEMORY)
