@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from enpointe.controllers import Recording
     from enpointe.figures import PhysicalFigures
     from enpointe.motion import Motion
+    from enpointe.motion.contact_schedule import ContactSchedule
     from enpointe.motion.weight_plan import WeightPlan
     from enpointe.sim.measures import Measures
 
@@ -42,15 +43,33 @@ class Physics:
     qp_failures: int | None
 
 
-def run_physics(motion: Motion, controller: str, progress: Progress = silent) -> Physics:
-    """Dance a reference by pd or wholebody on the simulated stage."""
+def run_physics(
+    motion: Motion,
+    controller: str,
+    progress: Progress = silent,
+    contacts: ContactSchedule | None = None,
+) -> Physics:
+    """Dance a reference by pd or wholebody on the simulated stage.
+
+    Args:
+        motion: The reference.
+        controller: One of `CONTROLLERS`, not "kinematic".
+        progress: Told how far it is.
+        contacts: Which soles the reference was planned to stand on; read from it if None.
+    """
     from enpointe.controllers import PD, FeedForward, WholeBody
     from enpointe.controllers import perform as run
+    from enpointe.controllers.wholebody import DEFAULT_TASKS, STEPPING_TASKS
     from enpointe.sim.body import SimulatedBody
     from enpointe.sim.measures import measure
 
-    planned = FeedForward.along(motion)
-    driver = WholeBody(motion) if controller == "wholebody" else PD(motion, feedforward=planned)
+    planned = FeedForward.along(motion, contacts)
+    tasks = DEFAULT_TASKS if contacts is None else STEPPING_TASKS
+    driver = (
+        WholeBody(motion, contacts=contacts, tasks=tasks)
+        if controller == "wholebody"
+        else PD(motion, feedforward=planned)
+    )
     recording = run(
         motion,
         driver,

@@ -230,11 +230,11 @@ def _attempt(
     danced: list[tuple[float, float]] = []
     chosen = _choose(captured, asked, speed, falls)
     while True:
-        motion, weight = _possible(captured, chosen.eased, controller, progress)
+        motion, weight, contacts = _possible(captured, chosen.eased, controller, progress)
         dance = FilePerformance(
             controller=controller,
             motion=motion,
-            physics=run_physics(motion, controller, progress),
+            physics=run_physics(motion, controller, progress, contacts),
             weight=weight,
             captured=captured,
             asked=asked,
@@ -365,10 +365,14 @@ def _within(found: Iterable[Obstacle], asked: tuple[float, float]) -> tuple[Obst
 
 def _possible(
     captured: Captured, eased: Eased, controller: str, progress: Progress
-) -> tuple[Motion, WeightPlan | None]:
-    """A reference that gravity and the floor allow; what is the dancer's own goes as scores do."""
+) -> tuple[Motion, WeightPlan | None, ContactSchedule | None]:
+    """A reference that gravity and the floor allow; what is the dancer's own goes as scores do.
+
+    Returns:
+        It, its weight, and what it stands on where that is not read from it.
+    """
     if captured.stored:
-        return reference(eased.motion, controller, progress)
+        return *reference(eased.motion, controller, progress), None
     from enpointe.motion.danceable import make_danceable
 
     made = make_danceable(
@@ -376,4 +380,4 @@ def _possible(
         contacts=eased.contacts,
         progress=lambda done, total: progress("weight", done, total),
     )
-    return replace(made.motion, name=captured.motion.name), made.weight
+    return replace(made.motion, name=captured.motion.name), made.weight, made.contacts

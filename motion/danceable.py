@@ -22,10 +22,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
 
-from enpointe.models.soles import sole_points
 from enpointe.motion.averaging import averaged_qpos
+from enpointe.motion.carried_feet import carried
 from enpointe.motion.clearance import LIFTING, lifted
-from enpointe.motion.contact_schedule import ContactSchedule, contact_schedule
+from enpointe.motion.contact_schedule import ContactSchedule, contact_schedule, trace_soles
 from enpointe.motion.motion import Motion
 from enpointe.motion.weight_plan import WeightPlan, plan_weight
 from enpointe.notation import Side
@@ -96,6 +96,7 @@ def make_danceable(
         contacts: What stands and when, where somebody knows; read from the motion otherwise.
         progress: Called with (done, all) now and then.
     """
+    known = contacts is not None
     contacts = contact_schedule(motion) if contacts is None else contacts
     rate = 1.0 / float(np.median(np.diff(motion.time)))
     soft = Motion.from_qpos(
@@ -106,7 +107,7 @@ def make_danceable(
         weight = plan_weight(soft, contacts, posed)
         posed = soft
         for width in _KINKS:
-            qpos = _Poser(posed, contacts, weight, height_cost).pose_all(progress)
+            qpos = _Poser(posed, contacts, weight, height_cost, carry=known).pose_all(progress)
             posed = Motion.from_qpos(
                 motion.model,
                 motion.time,
@@ -126,6 +127,8 @@ class _Poser:
         contacts: ContactSchedule,
         weight: WeightPlan,
         height_cost: float,
+        *,
+        carry: bool,
     ) -> None:
         self._motion, self._contacts, self._weight = motion, contacts, weight
         model = motion.model
@@ -148,17 +151,12 @@ class _Poser:
         self._arms = _arms(model)
         self._freedom = _freedom(contacts)
         feet = [leg.soles for leg in self._legs]
-        self._lift = _lift(self._heights(), self._freedom, feet, contacts.time)
-
-    def _heights(self) -> Array:
-        """Heights of the soles as the motion has them, (T, S), m."""
-        model, data, soles = self._motion.model, self._data, self._contacts.soles
-        heights = np.empty(self._contacts.bears.shape)
-        for row, qpos in zip(heights, self._motion.qpos, strict=True):
-            data.qpos[:] = qpos
-            mujoco.mj_kinematics(model, data)
-            row[:] = sole_points(model, data, soles)[:, 2]
-        return heights
+        self._moving = trace_soles(motion, contacts.soles)
+        self._lift = _lift(self._moving[:, :, 2], self._freedom, feet, contacts.time)
+        for soles in feet if carry else ():
+            self._moving[:, soles] = carried(
+                self._moving[:, soles], contacts.points[:, soles], contacts.bears[:, soles]
+            )
 
     def pose_all(self, progress: Callable[[int, int], None] | None) -> Array:
         model, motion = self._motion.model, self._motion
@@ -188,9 +186,8 @@ class _Poser:
         data.qpos[:] = self._motion.qpos[i]
         mujoco.mj_kinematics(model, data)
         radii = model.geom_size[self._contacts.soles, 0]
-        moving = sole_points(model, data, self._contacts.soles)
         free = self._freedom[i][:, None]
-        points = free * moving + (1.0 - free) * self._contacts.points[i]
+        points = free * self._moving[i] + (1.0 - free) * self._contacts.points[i]
         points[:, 2] += self._lift[i]
         for task, point, radius in zip(self._soles, points, radii, strict=True):
             task.set_position_cost(_SOLE / (1.0 + (point[2] / _GROUND) ** 2))

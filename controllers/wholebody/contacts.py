@@ -9,11 +9,13 @@ from numpy.typing import NDArray
 
 from enpointe.controllers.wholebody.reference import Reference
 from enpointe.controllers.wholebody.rows import repeated
+from enpointe.motion.contact_schedule import ContactSchedule
 
-__all__ = ["ContactSchedule", "Uptake"]
+__all__ = ["PlannedSoles", "Uptake"]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
+_NONE: Indices = np.empty(0, dtype=np.int64)
 PLANNED_DOWN = 0.001
 """A sole that the reference has lower than this, m, is on the floor: weight that is counted on
 while a heel is still coming down is missing under the ball, and lets the body drop onto it."""
@@ -26,29 +28,51 @@ PLANTED_SPEED = 0.1
 """A sole that the reference moves faster than this, m/s, slides or swings and bears nothing."""
 
 
-class ContactSchedule:
-    """The soles that the reference puts on the floor, still, at each of its samples.
+class PlannedSoles:
+    """The soles that are meant to bear at each sample of a reference.
 
     Args:
         reference: What is to be danced.
+        contacts: Which soles it was planned to stand on; without, those that it puts on the floor,
+            still.
 
     Attributes:
         planned: (T, S).
     """
 
-    def __init__(self, reference: Reference) -> None:
-        level = np.linalg.norm(np.asarray(reference.point_velocity)[:, :, :2], axis=2)
-        self.planned = (reference.clearance < PLANNED_DOWN) & (level < PLANTED_SPEED)
+    def __init__(self, reference: Reference, contacts: ContactSchedule | None = None) -> None:
+        if contacts is None:
+            level = np.linalg.norm(np.asarray(reference.point_velocity)[:, :, :2], axis=2)
+            self.planned = (reference.clearance < PLANNED_DOWN) & (level < PLANTED_SPEED)
+        else:
+            self.planned = np.array([contacts.at(t) for t in reference.time.tolist()])
         self._times = reference.time.tolist()
 
     def at(self, t: float) -> NDArray[np.bool_]:
         """Soles planned to bear at `t` seconds, (S,)."""
         return np.asarray(self.planned[max(bisect_right(self._times, t) - 1, 0)])
 
-    def split(self, t: float, clearance: Array) -> tuple[Indices, Indices]:
-        """Rows of the soles that are planned to bear at `t`: those on the floor, and those not."""
+    def split(
+        self, t: float, clearance: Array, standing: Indices = _NONE
+    ) -> tuple[Indices, Indices]:
+        """Rows of the soles that bear at `t`: those that are meant to and are on the floor.
+
+        Where none of them is there yet, what stood until now and is still on the floor stands on:
+        a foot that lands late is waited for.
+
+        Args:
+            t: s.
+            clearance: Of each sole, (S,), m.
+            standing: Rows that bore until now.
+
+        Returns:
+            They, and those that are meant to bear and are off the floor.
+        """
         planned, near = self.at(t), clearance < NEAR
-        return (planned & near).nonzero()[0], (planned > near).nonzero()[0]
+        active = (planned & near).nonzero()[0]
+        if len(active) == 0 and planned.any():
+            active = standing[near[standing]]
+        return active, (planned > near).nonzero()[0]
 
 
 class Uptake:

@@ -21,12 +21,13 @@ from enpointe.controllers.wholebody.constraints import (
     TorqueLimits,
     joint_torques,
 )
-from enpointe.controllers.wholebody.contacts import ContactSchedule, Uptake
+from enpointe.controllers.wholebody.contacts import PlannedSoles, Uptake
 from enpointe.controllers.wholebody.instant import Instant, Observer
 from enpointe.controllers.wholebody.problem import WholeBodyProblem
 from enpointe.controllers.wholebody.reference import Reference
 from enpointe.controllers.wholebody.rows import places
 from enpointe.controllers.wholebody.standing_place import StandingPlace
+from enpointe.controllers.wholebody.step_adjustment import StepAdjustment
 from enpointe.controllers.wholebody.tasks import (
     AngularMomentum,
     CentreOfMass,
@@ -38,8 +39,9 @@ from enpointe.controllers.wholebody.tasks import (
     Task,
 )
 from enpointe.motion import Motion
+from enpointe.motion.contact_schedule import ContactSchedule
 
-__all__ = ["DEFAULT_TASKS", "WholeBody", "Workload"]
+__all__ = ["DEFAULT_TASKS", "STEPPING_TASKS", "WholeBody", "Workload"]
 
 Array = NDArray[np.float64]
 PERIOD = 0.002
@@ -56,6 +58,18 @@ DEFAULT_TASKS: tuple[Task, ...] = (
     Posture(),
     SwingFoot(),
 )
+STEPPING_TASKS: tuple[Task, ...] = (
+    CentreOfMass(weight=1000.0),
+    AngularMomentum(weight=1.0),
+    Contact(pivots=True),
+    Landing(),
+    Orientation(),
+    Posture(),
+    SwingFoot(weight=100.0),
+)
+"""For steps that follow one another: what trunk, arms and a leg in the air take up of the weight's
+error in one they can't give back before the next, so that they take up less; and feet that carry
+may turn."""
 TONE_FREQUENCY = 2 * np.pi * 1.0
 """rad/s. Joints are held softly to what the programme integrates to, a third of the frequency that
 plain PD is given, so that a body without torque control can be driven as well."""
@@ -90,6 +104,8 @@ class WholeBody:
 
     Args:
         motion: What to dance.
+        contacts: Which soles it was planned to stand on, of the same model; read from the motion if
+            None.
         model: The controller's own picture of the body; the motion's model if None.
         tasks: What is wished for.
         constraints: What must hold; root, friction, torques and joint ranges if None.
@@ -106,6 +122,7 @@ class WholeBody:
         self,
         motion: Motion,
         *,
+        contacts: ContactSchedule | None = None,
         model: mujoco.MjModel | None = None,
         tasks: Sequence[Task] = DEFAULT_TASKS,
         constraints: Sequence[Constraint] | None = None,
@@ -130,9 +147,15 @@ class WholeBody:
             )
         )
         self._reference = Reference(motion, self._observer)
-        self._schedule = ContactSchedule(self._reference)
+        self._schedule = PlannedSoles(self._reference, contacts)
         self._place = StandingPlace()
+        self._steps = (
+            None
+            if contacts is None
+            else StepAdjustment(self._schedule, self._reference.time, self._observer.feet)
+        )
         self._uptake = Uptake(len(self._observer.soles))
+        self._active = np.empty(0, dtype=np.int64)
         self._period = period
         self._fallback = Gains.suggested(motion.model, motion.qpos[0])
         plant.place(motion.qpos[0])
@@ -149,9 +172,11 @@ class WholeBody:
         self.workload = Workload()
         self.problem = self.unknowns = None
         self._observer.place(state.qpos, state.qvel)
-        active, _ = self._schedule.split(0.0, self._observer.clearance())
-        self._place.reset(self._observer.points(), self._reference.points[0], active)
-        self._uptake.reset(active)
+        self._active, _ = self._schedule.split(0.0, self._observer.clearance())
+        self._place.reset(self._observer.points(), self._reference.points[0], self._active)
+        self._uptake.reset(self._active)
+        if self._steps is not None:
+            self._steps.reset()
         self._torque[:] = 0.0
         self._position[:] = state.qpos[self._angles]
         self._velocity[:] = state.qvel[self._dofs]
@@ -175,12 +200,16 @@ class WholeBody:
     def build(self, t: float, state: State) -> WholeBodyProblem:
         """The programme at `t` seconds in `state`, not yet solved."""
         self._observer.place(state.qpos, state.qvel)
-        active, due = self._schedule.split(t, self._observer.clearance())
+        active, due = self._schedule.split(t, self._observer.clearance(), self._active)
+        self._active = active
         capacity = self._uptake.follow(active, self._period)
         instant = self._observer.instant(active, capacity, due)
         goal = self._reference.at(t)
         place = self._place.follow(instant.points, goal.points, active, self._period)
-        return WholeBodyProblem.build(instant, goal.placed(place), self.tasks, self.constraints)
+        goal = goal.placed(place)
+        if self._steps is not None:
+            goal = self._steps.follow(t, instant, goal, self._period)
+        return WholeBodyProblem.build(instant, goal, self.tasks, self.constraints)
 
     def _obey(self, instant: Instant, unknowns: Array) -> Command:
         dt, keep = self._period, math.exp(-self._period / TONE_MEMORY)

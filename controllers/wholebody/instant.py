@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from enpointe.controllers.plant import Plant
 from enpointe.controllers.wholebody.rows import Places, places, repeated
+from enpointe.models.anatomy import SIDES
 
 __all__ = ["Instant", "Observer", "skew"]
 
@@ -158,6 +159,13 @@ class Observer:
     def soles(self) -> Indices:
         """Sole geoms, (S,)."""
         return self._soles
+
+    @property
+    def feet(self) -> tuple[Indices, Indices]:
+        """Rows of `soles` under the left foot, and under the right."""
+        names = [self.model.geom(int(geom)).name for geom in self._soles]
+        left = np.array([name.startswith(SIDES[0]) for name in names])
+        return np.flatnonzero(left), np.flatnonzero(~left)
 
     def place(self, qpos: Array, qvel: Array) -> None:
         """Bring the model to a state; `clearance` and `instant` then speak of it."""

@@ -118,24 +118,30 @@ class Contact:
 
     h is its height above the floor, upwards, where it has not quite come down: weight is counted
     on it already. A wish and not a constraint, since six points of one foot can't all be kept
-    independently.
+    independently. One that pivots goes over the floor with its reference instead of stopping:
+    J qacc = p''_r - J' v + k (p'_r - J v).
 
     Attributes:
         weight: Per (m/s^2)^2.
         damping: k, 1/s.
         stiffness: s, 1/s^2.
+        pivots: Whether a sole may be meant to turn or slide while it bears.
     """
 
     name: ClassVar[str] = "contact"
     weight: float = 300.0
     damping: float = 40.0
     stiffness: float = 400.0
+    pivots: bool = False
 
     def rows(self, instant: Instant, goal: Goal) -> Rows:
         active = instant.active
         jacobian = instant.jacobians.take(active, axis=0).reshape(-1, instant.nv)
         towards = -(instant.drifts + self.damping * instant.velocities)[active]
         towards[:, 2] -= self.stiffness * np.maximum(instant.points[active, 2], 0.0)
+        if self.pivots:
+            led = goal.point_acceleration[active] + self.damping * goal.point_velocity[active]
+            towards[:, :2] += led[:, :2]
         target = towards.ravel()
         return Rows(jacobian, target, repeated(self.weight, len(target)), instant.accelerations)
 
