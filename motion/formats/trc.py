@@ -128,8 +128,10 @@ class _Head:
 
 
 def _head(lines: list[str], path: Path) -> _Head:
-    if not lines[0].split()[:1] == ["PathFileType"]:
-        raise FormatError("a TRC file starts with PathFileType", path, line=1)
+    if lines[0].split()[:1] != ["PathFileType"]:
+        parted = lines[0].startswith("PathFileType")
+        why = "columns must be parted by tabs" if parted else "a TRC file starts with PathFileType"
+        raise FormatError(why, path, line=1)
     at = next(
         (i for i, line in enumerate(lines[:_HEADER_WITHIN]) if line.split()[:1] == ["Frame#"]), None
     )

@@ -97,6 +97,11 @@ def test_nonsense_is_refused_with_its_line(tmp_path: Path, old: str, new: str, l
     assert caught.value.line == line
 
 
+def test_columns_parted_by_commas_are_said_to_be(tmp_path: Path) -> None:
+    with pytest.raises(FormatError, match="parted by tabs"):
+        read_trc(written(tmp_path, BODY.replace("\t", ",")))
+
+
 def test_a_last_row_that_was_cut_is_left_out(tmp_path: Path) -> None:
     content = read_trc(written(tmp_path, BODY[: BODY.index("1631.528")]))
     assert isinstance(content.motion, MarkerMotion)
