@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -21,13 +21,15 @@ from enpointe.options import (
     Video,
     unbundled,
 )
-from enpointe.preparing import Progress
+
+if TYPE_CHECKING:
+    from enpointe.preparing import Progress
+
+    Compared = enpointe.Comparison | enpointe.FileComparison | enpointe.BodyComparison
 
 __all__ = ["compare_verb"]
 
 compare_verb = typer.Typer()
-
-Compared = enpointe.Comparison | enpointe.FileComparison | enpointe.BodyComparison
 
 
 @compare_verb.command()

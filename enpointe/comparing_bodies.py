@@ -130,7 +130,7 @@ def compare_bodies(
     """Dance on a rig of servos, and set it beside the dancer; or set beside her what it did before.
 
     Args:
-        source: As for `servo`, as is all that follows but the last.
+        source: See `servo`.
         rig: A shipped rig's name, a TOML file, or a rig.
         port: Where the servos are; with the rig's body behind them, simulated, if left out.
         effort: See `perform`.

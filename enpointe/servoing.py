@@ -108,8 +108,10 @@ class ServoPerformance:
         return self.recording.as_motion() if self.staged is None else self.staged.seen()
 
     @cached_property
-    def timing(self) -> TimingKept:
-        """What of the effort came out."""
+    def timing(self) -> TimingKept | None:
+        """What of the effort came out; None of a dance that ended at once."""
+        if len(self.recording.time) < 2:
+            return None
         from enpointe.motion.joint_timing import timing_kept
 
         return timing_kept(self.motion, self.danced, self.rig.joints)

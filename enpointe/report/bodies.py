@@ -6,11 +6,8 @@ from contextlib import ExitStack
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-import numpy as np
-
 from enpointe.comparing_bodies import DANCER, BodyComparison
 from enpointe.figures import BodyFigures, ServoFigures
-from enpointe.motion import Motion
 from enpointe.preparing import Progress
 from enpointe.report.blocks import (
     Block,
@@ -25,17 +22,15 @@ from enpointe.report.blocks import (
 )
 from enpointe.report.effort_kept import effort_table
 from enpointe.report.facing import in_front_of, seen_from
-from enpointe.report.films import HALL, FilmFile, FilmSize
+from enpointe.report.films import HALL, FilmFile, FilmSize, counter, some_poses
 from enpointe.report.pictures import fitted_view
 from enpointe.report.tracking import tracking_chart, worst_joints
 from enpointe.report.words import DASH
-from enpointe.sim.camera import View
 from enpointe.sim.render import open_painter
-from enpointe.sim.video import film, frame_samples, side_by_side
+from enpointe.sim.video import film, side_by_side
 
 __all__ = ["draw_bodies"]
 
-_FITTED_POSES = 40
 _DRAWN = 6
 """Joints of which there is a curve."""
 
@@ -107,28 +102,16 @@ def _film(shown: BodyComparison, progress: Progress) -> tuple[FilmFile, str | No
     """Bodies side by side, each as large as the others."""
     motions, front = shown.motions, in_front_of(shown.asked, HALL)
     size = FilmSize.of([motion.duration for motion in motions.values()])
-    frames = sum(len(frame_samples(motion.time, size.fps)) for motion in motions.values())
-    painted = 0
-
-    def count(_done: int, _total: int) -> None:
-        nonlocal painted
-        painted += 1
-        progress("film", painted, frames)
-
+    count = counter(motions.values(), size.fps, progress)
     with ExitStack() as open_, TemporaryDirectory() as folder:
         reels, warning = [], None
         for motion in motions.values():
             painter, warning = open_painter(motion.model, size.width, size.height)
             open_.enter_context(painter)
-            view = _fitted(motion, front)
+            view = fitted_view(motion.model, some_poses(motion), front)
             reels.append(film(motion.time, motion.qpos, painter, view, size.fps, progress=count))
         pictures = side_by_side(reels, list(motions))
         return size.write(Path(folder), pictures), warning
-
-
-def _fitted(motion: Motion, view: View) -> View:
-    some = np.unique(np.linspace(0, len(motion.time) - 1, _FITTED_POSES).astype(int))
-    return fitted_view(motion.model, list(motion.qpos[some]), view)
 
 
 def _arms(bodies: dict[str, BodyFigures]) -> tuple[Table, ...]:

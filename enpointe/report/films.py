@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
+from numpy.typing import NDArray
 from PIL import Image
 
 from enpointe.danced import Danced
+from enpointe.motion import Motion
 from enpointe.preparing import Progress
 from enpointe.report.ground import support_at
 from enpointe.report.pictures import ASPECT, fitted_view
@@ -26,7 +28,7 @@ from enpointe.sim.video import (
     write_mp4,
 )
 
-__all__ = ["HALL", "FilmFile", "FilmSize", "film_of"]
+__all__ = ["HALL", "FilmFile", "FilmSize", "counter", "film_of", "some_poses"]
 
 HEIGHT_ONE, HEIGHT_SEVERAL = 600, 400
 FPS, FPS_SLOW = 20.0, 10.0
@@ -107,15 +109,8 @@ def film_of(performances: Mapping[str, Danced], progress: Progress, view: View =
     """
     motions = [p.danced for p in performances.values()]
     size = FilmSize.of([motion.duration for motion in motions])
-    view = _fitted(performances, view)
-    frames = sum(len(frame_samples(m.time, size.fps)) for m in motions)
-    painted = 0
-
-    def count(_done: int, _total: int) -> None:
-        nonlocal painted
-        painted += 1
-        progress("film", painted, frames)
-
+    view = fitted_view(motions[0].model, [pose for m in motions for pose in some_poses(m)], view)
+    count = counter(motions, size.fps, progress)
     # One painter serves all: contexts are dear, and the variants share the body.
     painter, _ = open_painter(motions[0].model, size.width, size.height)
     with painter, TemporaryDirectory() as folder:
@@ -137,14 +132,19 @@ def film_of(performances: Mapping[str, Danced], progress: Progress, view: View =
         )
 
 
-def _fitted(performances: Mapping[str, Danced], view: View) -> View:
-    poses = []
-    for performance in performances.values():
-        qpos = performance.danced.qpos
-        some = np.unique(np.linspace(0, len(qpos) - 1, _FITTED_POSES).astype(int))
-        poses += list(qpos[some])
-    model = next(iter(performances.values())).motion.model
-    return fitted_view(model, poses, view)
+def some_poses(motion: Motion) -> list[NDArray[np.float64]]:
+    """Poses of a motion, evenly from all of it, to fit a view to; each (nq,)."""
+    some = np.unique(np.linspace(0, len(motion.qpos) - 1, _FITTED_POSES).astype(int))
+    return list(motion.qpos[some])
+
+
+def counter(
+    motions: Iterable[Motion], fps: float, progress: Progress
+) -> Callable[[int, int], None]:
+    """What `film` is to call for each frame of all the motions of one film."""
+    frames = sum(len(frame_samples(motion.time, fps)) for motion in motions)
+    painted = itertools.count(1)
+    return lambda _done, _total: progress("film", next(painted), frames)
 
 
 def _overlays(performance: Danced) -> Callable[[int], Overlays | None] | None:

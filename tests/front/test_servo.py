@@ -7,6 +7,7 @@ import os
 import re
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -76,6 +77,13 @@ def test_two_dances_in_memory_are_the_same_bit_for_bit(
         assert one.tobytes() == other.tobytes(), name
     for name, values in danced.recording.channels.items():
         assert values.tobytes() == again.recording.channels[name].tobytes(), name
+
+
+def test_a_dance_that_ended_at_once_has_no_effort_to_tell_of(danced: ServoPerformance) -> None:
+    first = replace(danced.recording, time=danced.recording.time[:1], fault="servo 5 is silent")
+    ended = replace(danced, recording=first)
+    assert ended.timing is None
+    assert not ended.completed
 
 
 def test_a_recording_is_danced_again(danced: ServoPerformance, tmp_path: Path) -> None:
