@@ -14,8 +14,6 @@ __all__ = ["in_step"]
 
 _TOGETHER = 0.02
 """s that a key pose may be off its moment: two samples of a rig."""
-_AT_ONCE = 1e-6
-"""s that is no delay."""
 
 
 def in_step(motion: Motion, other: Motion) -> tuple[Motion, float]:
@@ -54,7 +52,7 @@ def _moments(motion: Motion) -> np.ndarray:
 
 
 def _delayed(motion: Motion, delay: float) -> Motion:
-    if delay < _AT_ONCE:
+    if delay == 0.0:
         return motion
     still = np.zeros((1, motion.model.nv))
     return Motion(

@@ -275,10 +275,15 @@ def test_a_position_is_held_by_its_name(home: Path, capfd: pytest.CaptureFixture
     assert (home / "held" / "balance.csv").exists()
 
 
-def test_the_command_line_starts_without_what_it_may_not_need() -> None:
+def test_the_command_line_starts_without_what_it_may_not_need(tmp_path: Path) -> None:
     heavy = ("numpy", "mujoco", "casadi", "matplotlib", "enpointe.servoing")
     code = f"import sys, enpointe.cli; print([m for m in {heavy} if m in sys.modules])"
     done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60
+        [sys.executable, "-c", code],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=60,
     )
     assert done.stdout.strip() == "[]"
